@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/geometry/camera_model.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/robot/robot_model.hpp"
+
+namespace calibrd {
+
+/// What a virtual sensor measures: one entry per pixel, row-major, every pixel written.
+struct VirtualMeasurement {
+  int width = 0;
+  int height = 0;
+  std::vector<float> depth_m;           ///< along the optical axis; 0 = nothing hit
+  std::vector<Eigen::Vector3f> normal;  ///< unit, sensor frame, towards the sensor; zero where nothing was hit
+  std::vector<std::int16_t> link;       ///< index into RobotModel::links(); -1 = nothing hit
+};
+
+/// The robot placed at joint positions, measured by a virtual sensor from any pose (Embree ray casting).
+/// One thread at a time; `robot` must outlive it.
+class VirtualCell {
+ public:
+  explicit VirtualCell(const RobotModel& robot);
+  ~VirtualCell();
+  VirtualCell(VirtualCell&&) noexcept;
+  VirtualCell& operator=(VirtualCell&&) noexcept;
+
+  /// Moves the robot. positions: RobotModel::position_names() order, rad or m.
+  void set_joints(std::span<const double> positions);
+
+  /// Depth image, normals and link ids seen from `T_base_sensor`, lens distortion included. Reuses the buffers of
+  /// `measurement`.
+  void measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& measurement) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calibrd
