@@ -137,7 +137,7 @@ class Refiner {
     result_.T_base_sensor = perturbed(result_.T_base_sensor, delta.head<6>());
     result_.correction.offset_m += delta[kOffset];
     result_.correction.scale += delta[kScale];
-    small_step_ = delta.head<3>().norm() < settings_.convergence_rad && delta.segment<3>(3).norm() < settings_.convergence_m;
+    small_step_ = delta.dot(information * delta) < settings_.convergence_sigmas * settings_.convergence_sigmas;
   }
 
   void finish(const Stage& stage) {

@@ -15,8 +15,8 @@ struct RefineSettings {
   double offset_prior_m = 0.02;  ///< standard deviation of the range offset before anything was seen
   double scale_prior = 0.005;    ///< and of the range scale
   int final_iterations = 12;
-  double convergence_m = 2e-6;
-  double convergence_rad = 2e-6;
+  /// A step this small against the uncertainty of the result ends the iteration.
+  double convergence_sigmas = 0.1;
   std::function<bool(double)> keep_going;  ///< called with the progress 0..1; false ends the refinement early
 };
 
