@@ -91,7 +91,7 @@ TEST(Framer, AcceptsLengthsFrom12To1024Only) {
   for (const ByteOrder order : {ByteOrder::little, ByteOrder::big}) {
     for (const std::int32_t good : {12, 13, 1023, 1024})
       EXPECT_FALSE(error_of(length_field(good, order), order));
-    for (const std::int32_t bad : {0, 1, 11, 1025, 2000, 0x7fffffff, -1, -12, INT32_MIN}) {
+    for (const std::int32_t bad : {0, 1, 11, 1025, 2000, 0x7fffffff, -1, -12, INT32_MIN + 1}) {
       EXPECT_EQ(error_of(length_field(bad, order), order), SimpleMessageError::length_out_of_range) << bad;
     }
   }
