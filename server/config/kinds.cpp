@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "api/pose/pose_numbers.hpp"
-#include "api/text/nearest_name.hpp"
+#include "core/robot/nearest_name.hpp"
 #include "server/config/config_error.hpp"
 
 namespace calibrd {
@@ -147,7 +147,7 @@ Kind<std::string> one_of(std::vector<std::string> choices) {
             const auto s = as_string(value);
             if (s && std::find(choices.begin(), choices.end(), *s) != choices.end()) return *s;
             return bad(shown(value) + " is not one of " + name +
-                       (s ? "; " + api::name_hint(*s, choices) : std::string()));
+                       (s ? "; " + name_hint(*s, choices) : std::string()));
           },
           [](const std::string& value) { return quoted(value); }};
 }

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "api/text/nearest_name.hpp"
+#include "core/robot/nearest_name.hpp"
 #include "server/config/config_error.hpp"
 #include "server/config/setting.hpp"
 
@@ -43,7 +43,7 @@ Error unknown_key(const RawEntry& entry) {
       if (part != "*" && std::find(known.begin(), known.end(), part) == known.end()) known.push_back(part);
     }
     if (next.empty()) {
-      const auto hint = known.empty() ? std::string() : " (" + api::name_hint(entry.path[i], known) + ")";
+      const auto hint = known.empty() ? std::string() : " (" + name_hint(entry.path[i], known) + ")";
       return Error{ConfigError::unknown_key, entry.origin + ": " + join_path(entry.path) + hint};
     }
     left = std::move(next);
