@@ -36,6 +36,13 @@ class CaptureErrorCategory final : public std::error_category {
         return "a depth image must be a 16-bit single-channel PNG (an 8-bit one has lost the depth); export it again";
       case CaptureError::wrong_joint_count:
         return "joint_positions_rad must hold one finite number for each of robot.joint_names";
+      case CaptureError::unknown_joint:
+        return "robot.joint_names names a joint that the robot model does not have; use the URDF's joint names";
+      case CaptureError::missing_joint:
+        return "the robot model has a joint that robot.joint_names leaves out; record a position for every movable "
+               "joint";
+      case CaptureError::duplicate_joint:
+        return "robot.joint_names names this joint twice; name each joint once";
       case CaptureError::folder_not_empty:
         return "the folder is not empty; name a new one, recordings are never overwritten";
       case CaptureError::unwritable:

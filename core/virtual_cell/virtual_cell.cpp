@@ -133,6 +133,25 @@ void VirtualCell::place(std::vector<Pose> T_base_link) {
   rtcCommitScene(impl_->scene);
 }
 
+float VirtualCell::depth_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const {
+  const Eigen::Vector3f origin = T_base_sensor.translation().cast<float>();
+  const Eigen::Vector3f direction = (T_base_sensor.linear() * direction_sensor).cast<float>();
+  RTCRayHit hit{};
+  hit.ray.org_x = origin.x();
+  hit.ray.org_y = origin.y();
+  hit.ray.org_z = origin.z();
+  hit.ray.dir_x = direction.x();
+  hit.ray.dir_y = direction.y();
+  hit.ray.dir_z = direction.z();
+  hit.ray.tnear = kNear_m;
+  hit.ray.tfar = std::numeric_limits<float>::infinity();
+  hit.ray.mask = 0xFFFFFFFFU;
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  embree::intersect1(impl_->scene, hit);
+  return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? 0.0F : hit.ray.tfar;
+}
+
 const std::vector<Pose>& VirtualCell::link_poses() const { return impl_->T_base_link; }
 
 void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& out) const {

@@ -41,6 +41,9 @@ class VirtualCell {
   /// `measurement`.
   void measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& measurement) const;
 
+  /// Depth (m) of the robot along one direction (sensor frame, z = 1) seen from `T_base_sensor`; 0 = nothing hit.
+  float depth_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
+
   /// T_base_link of every link of the robot at the current joints.
   const std::vector<Pose>& link_poses() const;
 
