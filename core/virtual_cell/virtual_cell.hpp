@@ -27,6 +27,9 @@ struct VirtualMeasurement {
 class VirtualCell {
  public:
   explicit VirtualCell(const RobotModel& robot);
+  /// A second cell with joints of its own; the link surfaces are shared, so a copy is cheap.
+  VirtualCell(const VirtualCell& other);
+  VirtualCell& operator=(const VirtualCell&) = delete;
   ~VirtualCell();
   VirtualCell(VirtualCell&&) noexcept;
   VirtualCell& operator=(VirtualCell&&) noexcept;
@@ -38,7 +41,14 @@ class VirtualCell {
   /// `measurement`.
   void measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& measurement) const;
 
+  /// Depth (m) of the robot along one direction (sensor frame, z = 1) seen from `T_base_sensor`; 0 = nothing hit.
+  float depth_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
+
+  /// T_base_link of every link of the robot at the current joints.
+  const std::vector<Pose>& link_poses() const;
+
  private:
+  void place(std::vector<Pose> T_base_link);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

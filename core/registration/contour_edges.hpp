@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "core/registration/normal_equations.hpp"
+#include "core/registration/registration_view.hpp"
+
+namespace calibrd {
+
+struct ContourSettings {
+  double search_px = 8;        ///< image edges are looked for this far to both sides of the predicted contour
+  double kernel_px = 8;        ///< residuals beyond this have no weight (Tukey's biweight)
+  double sigma_px = 0.5;       ///< standard deviation of one edge position
+  double min_contrast = 5;     ///< an edge must step this many times the image's noise
+  int stride = 2;              ///< every stride-th contour pixel
+};
+
+struct ContourTally {
+  std::size_t predicted = 0;  ///< contour points looked at
+  std::size_t found = 0;      ///< of them with an image edge within the kernel
+  std::vector<float> whitened;
+  void merge(const ContourTally& other);
+};
+
+/// Residuals across the line of sight, which range cannot give: the robot's occluding contours are predicted by the
+/// virtual sensor, and image edges are searched along their normals (Drummond & Cipolla 2002). Needs no mask.
+/// `prediction` must be what `view.cell` shows from `T_base_sensor`. Does nothing when the view has no image.
+void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
+                           const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings,
+                           NormalEquations& equations, ContourTally& tally);
+
+}  // namespace calibrd
