@@ -26,6 +26,10 @@ CONTROL = re.compile(r"(?:^|[\s})])(?:if|else|for|while|switch|catch|do|try|retu
 SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum|extern)\b[^()=]*$")
 
 
+# `case Error::x: return "what is wrong";` is an entry of a message table, not a step of a function.
+TABLE_ENTRY = re.compile(r"[ \t]*(?:case [\w:]+:)?\s*(?:return\b)?\s*;?[ \t]*$")
+
+
 class Function(NamedTuple):
     line: int
     lines: int
@@ -41,8 +45,15 @@ def is_function(head: str) -> bool:
     return ")" in head and not CONTROL.match(head) and not re.search(r"=\s*$|,\s*$", head)
 
 
+def count_lines(code: str, text: str) -> int:
+    """The lines of a function; `code` is `text` with its strings and comments blanked."""
+    pairs = zip(code.splitlines(), text.splitlines())
+    return sum(1 for blanked, line in pairs
+               if not (TABLE_ENTRY.match(blanked) and re.match(r'\s*(case\b|return\s*"|")', line)))
+
+
 def functions(text: str) -> Iterator[Function]:
-    """The functions of a C++ file, the whole text from their first line to their closing brace."""
+    """The functions of a C++ file; a function's lines are those from its first to its closing brace."""
     code = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", blank, NOISE.sub(blank, text), flags=re.M)
     open_braces: list[tuple[str, int, str]] = []  # kind, where its head starts, the head
     head_start = 0
@@ -60,8 +71,8 @@ def functions(text: str) -> Iterator[Function]:
                 head_start = start  # it was an initialiser, a_{b}: the head of the function goes on
                 continue
             if kind == "function":
-                first = code.count("\n", 0, start) + 1
-                yield Function(first, code.count("\n", 0, at) + 2 - first, " ".join(opened.split())[:70])
+                lines = count_lines(code[start:at + 1], text[start:at + 1])
+                yield Function(code.count("\n", 0, start) + 1, lines, " ".join(opened.split())[:70])
         head_start = match.end()
 
 

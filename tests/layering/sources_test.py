@@ -38,6 +38,12 @@ class Sources(unittest.TestCase):
     def test_finds_a_function_of_more_than_40_lines(self):
         self.assertIn("41 lines in one function", self.complaints(TOP + "void f() {\n" + long_body(39) + "}\n"))
 
+    def test_does_not_count_the_entries_of_a_message_table(self):
+        entry = '    case E::a:\n      return "wrong: "\n             "do this";\n'
+        text = "const char* text(E e) {\n  switch (e) {\n" + entry * 30 + '  }\n  return "unknown";\n}\n'
+        self.assertEqual([f.lines for f in functions(text)], [4])
+        self.assertEqual([f.lines for f in functions(text.replace("return", "f();  return"))], [5 + 30])
+
     def test_counts_methods_in_classes_in_namespaces(self):
         text = "namespace a {\nclass B : public C {\n  int f() const override {\n" + long_body(50) + "  }\n};\n}\n"
         self.assertEqual([(f.line, f.lines) for f in functions(text)], [(3, 52)])
