@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-readonly kTools=(g++ cmake ninja-build ccache git ca-certificates curl jq python3)
+readonly kTools=(g++ cmake ninja-build pkgconf ccache git ca-certificates curl jq python3)
 readonly kLibraries=(
   libeigen3-dev libpcl-dev libembree-dev libtbb-dev libnanoflann-dev                     # geometry
   liburdfdom-dev liburdfdom-headers-dev libassimp-dev libtinyxml2-dev libspng-dev        # files
