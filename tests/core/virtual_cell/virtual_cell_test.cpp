@@ -45,10 +45,10 @@ TEST(VirtualCell, CameraOfTheSameSizeButOtherLensGivesAnotherPicture) {
 }
 
 TEST(VirtualCell, RobotPartlyBehindTheSensorIsSeenWhereItIsInFront) {
-  // A floor under the sensor reaches 3 m behind it, a wall stands wholly behind it.
+  // A floor under the sensor reaches 3 m behind it, a box stands wholly behind it.
   const RobotModel robot = robot_from(link("base", box_shape({6, 0.1, 6}, shift(0, 0.55, 0))) +
-                                      link("wall", box_shape({6, 6, 0.1}, shift(0, 0, -1))) +
-                                      revolute("joint", "base", "wall", "0 0 1", Pose::Identity()));
+                                      link("box", box_shape({0.4, 0.4, 0.1}, shift(0, 0, -1))) +
+                                      revolute("joint", "base", "box", "0 0 1", Pose::Identity()));
   const CameraModel camera{101, 101, 80, 80, 50, 50, {0, 0, 0, 0, 0}};
   const VirtualMeasurement m = measured(VirtualCell(robot), camera, Pose::Identity());
   for (int y = 0; y < camera.height; ++y) {
