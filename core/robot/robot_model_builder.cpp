@@ -44,6 +44,7 @@ std::optional<JointLimits> limits_of(const urdf::Joint& joint) {
 template <class Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const auto& item : items) names.push_back(item.name);
   return names;
 }
