@@ -7,6 +7,7 @@
 #include <urdf_model/model.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/robot/link_surface.hpp"
 #include "core/robot/nearest_name.hpp"
