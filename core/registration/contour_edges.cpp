@@ -247,8 +247,8 @@ std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel&
               std::hypot(kModelFloor_px, std::sqrt(variance))};
 }
 
-Observation observe(const ContourPoint& point, const Edge& edge, const CameraModel& camera,
-                    const Pose& T_base_sensor, const ContourSettings& settings) {
+Observation observe(const RegistrationView& view, int link, const ContourPoint& point, const Edge& edge,
+                    const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings) {
   Observation o;
   o.residual = edge.distance_px - settings.shift_px;
   o.sigma = edge.sigma_px;
@@ -261,6 +261,8 @@ Observation observe(const ContourPoint& point, const Edge& edge, const CameraMod
   o.jacobian.setZero();
   o.jacobian.head<6>() << u_base.cross(a), a;
   o.jacobian[kContourShift] = 1;
+  o.jacobian.tail<kMaxJointZeros>() =
+      -view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * a;
   return o;
 }
 
@@ -301,7 +303,7 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
       const auto edge = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
                                              : find_step(view, camera, *point, settings);
       if (!edge) continue;
-      const Observation o = observe(*point, *edge, camera, T_base_sensor, settings);
+      const Observation o = observe(view, prediction.link[i], *point, *edge, camera, T_base_sensor, settings);
       if (o.robust_weight <= 0) continue;
       ++tally.found;
       tally.residuals_px.push_back(static_cast<float>(o.residual));
