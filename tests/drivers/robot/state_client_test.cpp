@@ -147,6 +147,7 @@ TEST_F(StateClientTest, ReportsStaleJointsWhileTheStatusLives) {
   start();
   PeerConnection connection = peer_.accept();
   connection.send(cycle());
+  ASSERT_TRUE(recorder_.wait_for([&] { return recorder_.statuses.size() == 1; }));
   const Bytes status(cycle().begin() + 148, cycle().end());
   for (std::size_t count = 2; client_->health().state != State::joints_stale; ++count) {
     connection.send(status);
