@@ -65,23 +65,29 @@ Status Capture::open_depth() {
 
 /// Without its image the sensor still calibrates, so what is wrong with the image is a notice, not a failure.
 void Capture::open_image() {
+  const bool is_color = request_.image == ImageKind::color;
+  const bool is_registered = register_depth(is_color);
   if (request_.image == ImageKind::none) return;
-  auto stream = image_stream();
+  auto stream = is_color && !is_registered
+                    ? Result<std::unique_ptr<OpenNiStream>>(sensor_error(
+                          SensorError::stream_failed, "the device does not register depth to colour"))
+                    : image_stream(is_color);
   if (stream)
     image_ = std::move(*stream);
   else
     notice_ = "depth without image: " + stream.error().detail;
 }
 
-Result<std::unique_ptr<OpenNiStream>> Capture::image_stream() {
-  const bool is_color = request_.image == ImageKind::color;
+/// Depth in the colour camera's pixel grid, or in its own, whatever the driver's default is.
+bool Capture::register_depth(bool to_color) {
   openni::Device& device = device_->handle();
-  const auto registration =
-      is_color ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
-  const bool is_registered = device.setImageRegistrationMode(registration) == openni::STATUS_OK;
-  if (is_color && !is_registered)
-    return sensor_error(SensorError::stream_failed, "the device does not register depth to colour");
+  const auto mode = to_color ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
+  // Asked first: some drivers accept what they do not do.
+  return device.isImageRegistrationModeSupported(mode) &&
+         device.setImageRegistrationMode(mode) == openni::STATUS_OK;
+}
 
+Result<std::unique_ptr<OpenNiStream>> Capture::image_stream(bool is_color) {
   const auto sensor = is_color ? openni::SENSOR_COLOR : openni::SENSOR_IR;
   const auto offers = device_->modes(sensor);
   const std::span<const PixelFormat> formats =

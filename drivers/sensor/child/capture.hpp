@@ -27,7 +27,8 @@ class Capture {
  private:
   Status open_depth();
   void open_image();
-  Result<std::unique_ptr<OpenNiStream>> image_stream();
+  bool register_depth(bool to_color);
+  Result<std::unique_ptr<OpenNiStream>> image_stream(bool is_color);
   Status start();
   SensorStreaming description() const;
 
