@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
 constexpr auto kLongestWait = 100ms;  // also the slowest heartbeat, and the delay of SIGTERM
-constexpr int kMostBadFrames = 30;    // a damaged USB transfer is a lost frame, a row of them is a wrong mode
+constexpr int kMostBadFrames = 10;    // a damaged USB transfer is a lost frame, a row of them is a wrong mode
 constexpr int kMostAloneFrames = 90;
 constexpr int kAssumedFps = 30;
 
@@ -124,11 +124,15 @@ SensorStreaming Capture::description() const {
 Status Capture::run(FrameRingWriter& ring, ParentLink& parent) {
   Pairing pairing(image_ != nullptr, period_of(depth_->mode()));
   parent.send(description());
+  auto idle_at = steady_clock::now();
   while (!is_stop_requested()) {
     ring.beat();
     const auto received = receive(pairing);
     if (!received) return received.error();
-    while (auto pair = pairing.next(steady_clock::now()))
+    // Time counts only once nothing is left to read: a late process must not take its own delay for the
+    // image's.
+    if (!*received) idle_at = steady_clock::now();
+    while (auto pair = pairing.next(idle_at))
       if (auto delivered = deliver(*pair, ring, parent); !delivered) return delivered;
     if (auto checked = check_device(!*received); !checked) return checked;
   }
@@ -136,7 +140,8 @@ Status Capture::run(FrameRingWriter& ring, ParentLink& parent) {
 }
 
 Result<bool> Capture::receive(Pairing& pairing) {
-  std::array<openni::VideoStream*, 2> streams{&depth_->handle(), image_ ? &image_->handle() : nullptr};
+  std::array<openni::VideoStream*, 2> streams{image_ ? &image_->handle() : &depth_->handle(),
+                                              &depth_->handle()};
   auto wait = kLongestWait;
   if (const auto deadline = pairing.deadline())
     wait =
@@ -146,16 +151,16 @@ Result<bool> Capture::receive(Pairing& pairing) {
                                                        static_cast<int>(wait.count()));
   if (status == openni::STATUS_TIME_OUT) return false;
   if (status != openni::STATUS_OK) return openni_error(SensorError::stream_failed, device_->description());
-  accept(static_cast<std::size_t>(ready), pairing);
+  accept(image_ && ready == 0, pairing);
   return true;
 }
 
-void Capture::accept(std::size_t stream, Pairing& pairing) {
+void Capture::accept(bool is_image, Pairing& pairing) {
   const auto stamp = steady_clock::now();
-  auto frame = (stream == 0 ? depth_ : image_)->read();
+  auto frame = (is_image ? image_ : depth_)->read();
   if (!frame.isValid()) return;
   const Moment moment = moment_of(frame);
-  if (stream == 1) return pairing.add_image(std::move(frame), moment);
+  if (is_image) return pairing.add_image(std::move(frame), moment);
   last_index_ = moment.index;
   if (const auto sequence = numbering_.number(moment))
     pairing.add_depth({std::move(frame), *sequence, stamp}, moment, stamp);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// Processor time of one 512x424 frame with infrared: the child putting it into the ring, the daemon taking it out,
-// the memory for it included. Most of the latter is malloc returning that memory to the system after every frame;
-// the second run shows the cost without.
+// Processor time of one 512x424 frame with infrared: the child putting it into the ring, the daemon taking it
+// out, the memory for it included. Most of the latter is malloc returning that memory to the system after
+// every frame; the second run shows the cost without.
 #include <malloc.h>
 
 #include <cstdio>

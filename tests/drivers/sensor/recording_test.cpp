@@ -19,6 +19,12 @@ class RecordingTest : public SensorTest {
     write({.devices = 0});  // from here on only the file is there
   }
   std::string recording() const { return directory_ / "recording.oni"; }
+  /// Waits for a frame as long as one can come.
+  std::optional<DepthFrame> frame_or_end() {
+    while (sensor_->health().state != SensorHealth::State::lost)
+      if (auto next = sensor_->next(100ms)) return next;
+    return sensor_->next(0ms);
+  }
   SensorProcessSettings playing() const {
     auto wanted = settings();
     wanted.stream.recording = recording();
@@ -29,7 +35,7 @@ class RecordingTest : public SensorTest {
 TEST_F(RecordingTest, IsPlayedFrameByFrameAndEnds) {
   start(playing());
   int previous = 0, frames = 0, with_image = 0;
-  while (const auto received = sensor_->next(2s)) {
+  while (const auto received = frame_or_end()) {
     const int index = index_of(received->depth);
     ASSERT_GT(index, previous);
     if (received->image) {
@@ -64,15 +70,16 @@ TEST_F(RecordingTest, IsPlayedAgainAndAgain) {
   EXPECT_EQ(sensor_->health().restarts, 0u);
 }
 
-TEST_F(RecordingTest, IsPlayedFaster) {
+TEST_F(RecordingTest, IsPlayedAtTheSpeedAskedFor) {
   auto wanted = playing();
-  wanted.stream.speed = 4;
+  wanted.stream.speed = 0.5;
   start(wanted);
   const auto first = frame();
   auto last = first;
-  while (auto received = sensor_->next(1s)) last = std::move(received);
+  while (auto received = frame_or_end()) last = std::move(received);
   ASSERT_TRUE(first && last);
-  EXPECT_LT(last->stamp - first->stamp, 300ms);  // 400 ms as recorded
+  const auto recorded = 10ms * (index_of(last->depth) - index_of(first->depth));
+  EXPECT_GT(last->stamp - first->stamp, 1.5 * recorded);
 }
 
 TEST_F(RecordingTest, IsRefusedWhenItIsOfAnotherSize) {

@@ -18,6 +18,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/drivers/sensor/fakes/fake_control.hpp"
 #include "tests/drivers/sensor/fakes/test_pattern.hpp"
@@ -153,7 +154,7 @@ class FakeDevice : public oni::driver::DeviceBase {
       const std::lock_guard lock(mutex_);
       auto& stream = streams_[sensor];
       // The default is the larger mode, as with libfreenect2's driver: who wants the other must say so.
-      stream = std::make_unique<FakeStream>(sensor, modes_[static_cast<std::size_t>(i)][0], number_);
+      stream = std::make_shared<FakeStream>(sensor, modes_[static_cast<std::size_t>(i)][0], number_);
       return stream.get();
     }
     return nullptr;
@@ -197,6 +198,8 @@ class FakeDevice : public oni::driver::DeviceBase {
   }
 
   void run();
+  bool wait_for_next_frame();
+  std::vector<std::shared_ptr<FakeStream>> running_streams();
 
   FakeDriver& driver_;
   int number_;
@@ -205,7 +208,7 @@ class FakeDevice : public oni::driver::DeviceBase {
   std::array<OniSensorInfo, 3> infos_{};
   OniImageRegistrationMode registration_ = ONI_IMAGE_REGISTRATION_OFF;
   std::mutex mutex_;
-  std::map<OniSensorType, std::unique_ptr<FakeStream>> streams_;
+  std::map<OniSensorType, std::shared_ptr<FakeStream>> streams_;
   std::condition_variable stopped_;
   bool stop_ = false;
   std::thread thread_;
@@ -255,19 +258,31 @@ class FakeDriver : public oni::driver::DriverBase {
 void FakeDevice::run() {
   bool is_plugged = true;
   int frames = 0;
-  std::unique_lock lock(mutex_);
-  for (int index = 1; !stop_; ++index) {
+  for (int index = 1; !wait_for_next_frame(); ++index) {
     const Control control = read_control();
     if (is_plugged && control.devices <= number_) driver_.unplug(number_);
     is_plugged = is_plugged && control.devices > number_;
     if (control.crash_after > 0 && frames >= control.crash_after) std::abort();
-    const bool has_started = !streams_.empty();
-    for (int i = 0; is_plugged && has_started && !control.silent && i < control.repeat; ++i)
-      for (auto& [sensor, stream] : streams_) stream->deliver(index, control);
-    if (has_started) ++frames;
+    const auto streams = running_streams();
+    for (int i = 0; is_plugged && !control.silent && i < control.repeat; ++i)
+      for (const auto& stream : streams) stream->deliver(index, control);
+    if (!streams.empty()) ++frames;
     index += control.skip;
-    stopped_.wait_for(lock, std::chrono::microseconds(1'000'000 / kFps));
   }
+}
+
+/// True when the device is closed instead.
+bool FakeDevice::wait_for_next_frame() {
+  std::unique_lock lock(mutex_);
+  return stopped_.wait_for(lock, std::chrono::microseconds(1'000'000 / kFps), [&] { return stop_; });
+}
+
+/// Copies: the library is called back without our lock, since it takes its own first when it calls us.
+std::vector<std::shared_ptr<FakeStream>> FakeDevice::running_streams() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<FakeStream>> streams;
+  for (const auto& [sensor, stream] : streams_) streams.push_back(stream);
+  return streams;
 }
 
 }  // namespace
