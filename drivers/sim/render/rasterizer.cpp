@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace calibrd::sim {
 namespace {
@@ -24,19 +25,32 @@ std::array<float, 3> rounded(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// One row of samples. All in floats and without branches, so that the compiler can do several at a time.
-void fill_row(const Planes& t, const float* __restrict__ ray_x, const float* __restrict__ ray_y, int count,
-              std::uint32_t facet, float* __restrict__ depth, std::uint32_t* __restrict__ facets) {
-  for (int i = 0; i < count; ++i) {
-    const float x = ray_x[i], y = ray_y[i];
-    const float b0 = t.e0[0] * x + t.e0[1] * y + t.e0[2];
-    const float b1 = t.e1[0] * x + t.e1[1] * y + t.e1[2];
-    const float b2 = t.e2[0] * x + t.e2[1] * y + t.e2[2];
-    const float z = t.offset / (t.normal[0] * x + t.normal[1] * y + t.normal[2]);
-    const bool hit = (b0 >= 0.0F) & (b1 >= 0.0F) & (b2 >= 0.0F) & (z > 0.0F) & (z < depth[i]);
-    depth[i] = hit ? z : depth[i];
-    facets[i] = hit ? facet : facets[i];
-  }
+/// Four samples at a time: most triangles are a few samples wide, too few for a compiler's own loops to pay.
+using Floats = float __attribute__((vector_size(4 * kRowStep)));
+using Words = std::uint32_t __attribute__((vector_size(4 * kRowStep)));
+
+template <class Lanes, class T>
+Lanes load(const T* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+Floats along(const std::array<float, 3>& plane, Floats x, Floats y) { return plane[0] * x + plane[1] * y + plane[2]; }
+
+void fill_four(const Planes& t, const float* ray_x, const float* ray_y, std::uint32_t facet, float* depth,
+               std::uint32_t* facets) {
+  const Floats x = load<Floats>(ray_x), y = load<Floats>(ray_y);
+  const auto inside = (along(t.e0, x, y) >= 0.0F) & (along(t.e1, x, y) >= 0.0F) & (along(t.e2, x, y) >= 0.0F);
+  std::array<std::uint64_t, 2> any;
+  std::memcpy(any.data(), &inside, sizeof(inside));
+  if ((any[0] | any[1]) == 0) return;
+  const Floats before = load<Floats>(depth), z = t.offset / along(t.normal, x, y);
+  const auto hit = inside & (z > 0.0F) & (z < before);
+  const Floats nearest = hit ? z : before;
+  const Words seen = hit ? Words{} + facet : load<Words>(facets);
+  std::memcpy(depth, &nearest, sizeof(nearest));
+  std::memcpy(facets, &seen, sizeof(seen));
 }
 
 }  // namespace
@@ -92,10 +106,8 @@ PixelRect Rasterizer::bounds(const Vertex& a, const Vertex& b, const Vertex& c, 
           (samples.y1 - 1) / kSubSamples + 2};  // one pixel more all round, for the lens's blur
 }
 
-void Rasterizer::fill(const Vertex& a, const Vertex& b, const Vertex& c, const SampleRect& rect, std::uint32_t body,
-                      SampleBuffer& buffer, std::vector<Facet>& facets) const {
-  const double volume = a.point.dot(b.point.cross(c.point));
-  if (volume == 0) return;  // seen edge on
+void Rasterizer::fill(const Vertex& a, const Vertex& b, const Vertex& c, double volume, const SampleRect& rect,
+                      std::uint32_t body, SampleBuffer& buffer, std::vector<Facet>& facets) const {
   const double side = volume > 0 ? 1 : -1;
   const Eigen::Vector3d normal = side * (b.point - a.point).cross(c.point - a.point);
   const Planes planes{rounded(side * b.point.cross(c.point)), rounded(side * c.point.cross(a.point)),
@@ -104,9 +116,9 @@ void Rasterizer::fill(const Vertex& a, const Vertex& b, const Vertex& c, const S
   const auto facet = static_cast<std::uint32_t>(facets.size());
   facets.push_back({(-normal.normalized()).cast<float>(), body});
   for (int sy = rect.y0; sy < rect.y1; ++sy) {
-    const std::size_t at = grid_.index(rect.x0, sy);
-    fill_row(planes, &grid_.ray_x[at], &grid_.ray_y[at], rect.x1 - rect.x0, facet, &buffer.depth[at],
-             &buffer.facet[at]);
+    const std::size_t end = grid_.index(rect.x1, sy);
+    for (std::size_t at = grid_.index(rect.x0 / kRowStep * kRowStep, sy); at < end; at += kRowStep)
+      fill_four(planes, &grid_.ray_x[at], &grid_.ray_y[at], facet, &buffer.depth[at], &buffer.facet[at]);
   }
 }
 
@@ -116,11 +128,13 @@ void Rasterizer::draw(const Mesh& mesh, const Eigen::Isometry3d& T_sensor_body, 
   for (const auto& triangle : mesh.triangles) {
     const Vertex &a = vertices_[triangle[0]], &b = vertices_[triangle[1]], &c = vertices_[triangle[2]];
     if (is_outside(a, b, c)) continue;
+    const double volume = a.point.dot(b.point.cross(c.point));
+    if (volume == 0 || (mesh.solid && volume > 0)) continue;  // seen edge on, or from inside
     SampleRect samples;
     const PixelRect pixels = bounds(a, b, c, samples);
     if (samples.x0 >= samples.x1 || samples.y0 >= samples.y1) continue;
     touched.mark(pixels);
-    fill(a, b, c, samples, body, buffer, facets);
+    fill(a, b, c, volume, samples, body, buffer, facets);
   }
 }
 

@@ -19,7 +19,7 @@ struct Facet {
 
 /// z-buffer rasteriser on homogeneous edge functions (Olano and Greer 1997): a sample belongs to a triangle when its
 /// ray does, so the distorted rays need no straight edges in the image and nothing is ever clipped. Both sides of a
-/// triangle are seen. One thread.
+/// triangle are seen, but for solids. One thread.
 class Rasterizer {
  public:
   explicit Rasterizer(const SampleGrid& grid) : grid_(grid) {}
@@ -41,8 +41,8 @@ class Rasterizer {
   void place(const Mesh& mesh, const Eigen::Isometry3d& T_sensor_body);
   bool is_outside(const Vertex& a, const Vertex& b, const Vertex& c) const;
   PixelRect bounds(const Vertex& a, const Vertex& b, const Vertex& c, SampleRect& samples) const;
-  void fill(const Vertex& a, const Vertex& b, const Vertex& c, const SampleRect& rect, std::uint32_t body,
-            SampleBuffer& buffer, std::vector<Facet>& facets) const;
+  void fill(const Vertex& a, const Vertex& b, const Vertex& c, double volume, const SampleRect& rect,
+            std::uint32_t body, SampleBuffer& buffer, std::vector<Facet>& facets) const;
 
   const SampleGrid& grid_;
   std::vector<Vertex> vertices_;

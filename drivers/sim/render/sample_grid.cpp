@@ -14,7 +14,7 @@ Eigen::Vector2d SampleGrid::position(int sx, int sy) {
 
 SampleGrid::SampleGrid(const CameraParameters& parameters)
     : camera(parameters),
-      width(parameters.width * kSubSamples),
+      width((parameters.width * kSubSamples + kRowStep - 1) / kRowStep * kRowStep),
       height(parameters.height * kSubSamples),
       lowest(Eigen::Vector2d::Constant(kNothing)),
       highest(Eigen::Vector2d::Constant(-kNothing)),

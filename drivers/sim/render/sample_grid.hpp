@@ -15,6 +15,9 @@ namespace calibrd::sim {
 /// the pixel's centre.
 inline constexpr int kSubSamples = 3;
 
+/// Rows of samples are as long as a multiple of this; those past the image's edge are never looked at.
+inline constexpr int kRowStep = 4;
+
 /// The rays of all samples, row by row; ray (x, y, 1) in the sensor frame. Lens distortion is in here and nowhere
 /// else in the renderer.
 struct SampleGrid {

@@ -151,7 +151,7 @@ void SceneRenderer::resolve_mixed(std::size_t pixel, std::size_t first) {
 }
 
 void SceneRenderer::resolve_pixel(int x, int y) {
-  const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width / kSubSamples) +
+  const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.camera.parameters().width) +
                             static_cast<std::size_t>(x);
   const std::size_t first = grid_.index(kSubSamples * x, kSubSamples * y);
   const std::size_t centre = grid_.index(kSubSamples * x + 1, kSubSamples * y + 1);
