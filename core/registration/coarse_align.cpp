@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/registration/coarse_align.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <memory>
+#include <nanoflann.hpp>
+
+namespace calibrd {
+namespace {
+
+/// Measured points of one view (sensor frame) and their search tree.
+struct Cloud {
+  std::vector<Eigen::Vector3f> points;
+  // What nanoflann asks for:
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3>;
+
+struct Searchable {
+  std::unique_ptr<Cloud> cloud;
+  std::unique_ptr<Tree> tree;
+};
+
+CameraModel reduced(const CameraModel& camera, int factor) {
+  CameraModel small = camera;
+  small.width = camera.width / factor;
+  small.height = camera.height / factor;
+  small.fx /= factor;
+  small.fy /= factor;
+  small.cx = (camera.cx + 0.5) / factor - 0.5;
+  small.cy = (camera.cy + 0.5) / factor - 0.5;
+  return small;
+}
+
+Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const CameraModel& camera) {
+  Eigen::AlignedBox3d box;
+  for (int y = 0; y < prediction.height; ++y) {
+    for (int x = 0; x < prediction.width; ++x) {
+      const float z = prediction.depth_m[static_cast<std::size_t>(y * prediction.width + x)];
+      if (z > 0) box.extend(z * camera.ray(x, y));
+    }
+  }
+  return box;
+}
+
+Searchable make_searchable(const RegistrationView& view, const CameraModel& camera,
+                           Eigen::AlignedBox3d region, const CoarseSettings& settings) {
+  constexpr int kStride = 3;
+  region.min().array() -= settings.crop_margin_m;
+  region.max().array() += settings.crop_margin_m;
+  Searchable result{std::make_unique<Cloud>(), nullptr};
+  for (int y = 0; y < camera.height; y += kStride) {
+    for (int x = 0; x < camera.width; x += kStride) {
+      const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                                   static_cast<std::size_t>(x)];
+      if (z < region.min().z() || z > region.max().z() || z <= 0) continue;
+      const Eigen::Vector3d p = z * camera.ray(x, y);
+      if (region.contains(p)) result.cloud->points.push_back(p.cast<float>());
+    }
+  }
+  if (!result.cloud->points.empty())
+    result.tree = std::make_unique<Tree>(3, *result.cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  return result;
+}
+
+struct Sums {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+/// Point-to-plane sums of one view at one pose.
+Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, const Searchable& measured,
+             const Pose& T_base_sensor, double kernel_m) {
+  Sums sums;
+  if (!measured.tree) return sums;
+  const Eigen::Matrix3d R = T_base_sensor.linear();
+  for (int y = 0; y < prediction.height; ++y) {
+    for (int x = 0; x < prediction.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * prediction.width + x);
+      if (prediction.link[i] < 0) continue;
+      const Eigen::Vector3d q = prediction.depth_m[i] * camera.ray(x, y);
+      const Eigen::Vector3f query = q.cast<float>();
+      std::uint32_t nearest = 0;
+      float squared_distance = 0;
+      if (measured.tree->knnSearch(query.data(), 1, &nearest, &squared_distance) == 0) continue;
+      const double distance = std::sqrt(static_cast<double>(squared_distance)) / kernel_m;
+      if (distance >= 1) continue;
+      const double weight = (1 - distance * distance) * (1 - distance * distance);
+      const Eigen::Vector3d n = prediction.normal[i].cast<double>();
+      const double residual = n.dot(measured.cloud->points[nearest].cast<double>() - q);
+      const Eigen::Vector3d n_base = R * n, u_base = R * q;
+      Vector6d jacobian;
+      jacobian << -u_base.cross(n_base), -n_base;
+      sums.information.noalias() += weight * jacobian * jacobian.transpose();
+      sums.gradient += weight * residual * jacobian;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera, const Pose& guess,
+                  const CoarseSettings& settings) {
+  const CameraModel small = reduced(camera, settings.reduction);
+  std::vector<Searchable> measured(views.size());
+  std::vector<VirtualMeasurement> predictions(views.size());
+  std::vector<Sums> sums(views.size());
+  tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    views[v].cell.measure(small, guess, predictions[v]);
+    measured[v] = make_searchable(views[v], camera, bounds_in_sensor(predictions[v], small), settings);
+  });
+
+  Pose pose = guess;
+  const double shrink =
+      std::pow(settings.end_kernel_m / settings.start_kernel_m, 1.0 / (settings.iterations - 1));
+  double kernel_m = settings.start_kernel_m;
+  for (int iteration = 0; iteration < settings.iterations; ++iteration, kernel_m *= shrink) {
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+      views[v].cell.measure(small, pose, predictions[v]);
+      sums[v] = pull_of(predictions[v], small, measured[v], pose, kernel_m);
+    });
+    Sums total;
+    for (const Sums& s : sums) {
+      total.information += s.information;
+      total.gradient += s.gradient;
+    }
+    if (total.information.trace() <= 0) break;
+    const Matrix6d damped = total.information + 1e-6 * total.information.trace() * Matrix6d::Identity();
+    pose = perturbed(pose, damped.ldlt().solve(total.gradient));
+  }
+  return pose;
+}
+
+}  // namespace calibrd

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/registration/depth_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace calibrd {
+
+double depth_sigma_m(double z, double cos_incidence, double pixel_m) {
+  constexpr double kLateralPixels = 0.4;
+  const double cosine = std::clamp(cos_incidence, 0.05, 1.0);
+  const double angle = std::acos(cosine);
+  const double rest = std::numbers::pi / 2 - angle;
+  const double axial_mm =
+      1.5 - 0.5 * z + 0.3 * z * z + 0.1 * std::pow(z, 1.5) * angle * angle / (rest * rest);
+  const double slope = std::sqrt(1 - cosine * cosine) / cosine;
+  const double lateral_m = kLateralPixels * pixel_m * z * slope;
+  return std::hypot(1e-3 * axial_mm, lateral_m);
+}
+
+}  // namespace calibrd

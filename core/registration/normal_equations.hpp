@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace calibrd {
+
+/// What is estimated: the pose's δ = (δω, δt) as in perturbed(); offset (m), scale - 1 and the periodic term
+/// of the range (sine and cosine in m, period in m); and how far (px) image edges lie outside the predicted
+/// contours.
+enum Parameter : int { kPose = 0, kOffset = 6, kScale, kSine, kCosine, kPeriod, kContourShift, kParameters };
+using ParameterVector = Eigen::Matrix<double, kParameters, 1>;
+using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;
+
+/// One weighted observation: `jacobian` is the derivative of the *prediction* by the parameters, `residual`
+/// is measured minus predicted, both in the same unit.
+struct Observation {
+  ParameterVector jacobian;
+  double residual = 0;
+  double sigma = 1;          ///< standard deviation of the residual, same unit
+  double robust_weight = 1;  ///< 0..1
+};
+
+/// Gauss-Newton sums over observations. Observations are grouped into clusters whose errors may be correlated
+/// (neighbouring pixels): their gradients are kept apart for the covariance.
+class NormalEquations {
+ public:
+  void add(const Observation& observation, std::size_t cluster);
+  /// Adds the sums of `other`; its clusters stay apart from ours.
+  void merge(const NormalEquations& other);
+
+  /// The same sums with every weight multiplied by `factor`.
+  NormalEquations scaled(double factor) const;
+
+  const ParameterMatrix& information() const { return information_; }
+  const ParameterVector& gradient() const { return gradient_; }
+  double weight_sum() const { return weight_sum_; }
+  double squared_sum() const { return squared_sum_; }  ///< Σ w (r/σ)²
+  std::size_t count() const { return count_; }
+  double rms_residual() const;  ///< of inliers, in the unit of the residuals
+
+  /// How many times the scatter of the cluster sums exceeds that of independent observations (1 =
+  /// independent): the factor by which a covariance that assumes independence is too small, at least 1.
+  double correlation_factor() const;
+
+  /// Σ over clusters of g gᵀ: the middle of the sandwich covariance.
+  ParameterMatrix cluster_scatter() const;
+  std::size_t cluster_count() const;
+
+ private:
+  struct Cluster {
+    ParameterVector gradient = ParameterVector::Zero();
+    double whitened_sum = 0;      // Σ w r/σ
+    double whitened_squares = 0;  // Σ (w r/σ)²
+  };
+  ParameterMatrix information_ = ParameterMatrix::Zero();
+  ParameterVector gradient_ = ParameterVector::Zero();
+  double weight_sum_ = 0, squared_sum_ = 0, residual_squares_ = 0;
+  std::size_t count_ = 0;
+  std::vector<Cluster> clusters_;
+};
+
+}  // namespace calibrd

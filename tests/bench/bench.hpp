@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "core/capture/capture.hpp"
+#include "core/robot/robot_model.hpp"
+
+namespace calibrd::bench {
+
+using Paths = std::vector<std::filesystem::path>;
+
+/// A recording in memory, ready to be calibrated.
+struct Input {
+  RobotModel robot;
+  CameraModel camera;
+  std::vector<View> views;
+  std::optional<Pose> truth_T_base_sensor;  ///< of truth.json, where there is one
+};
+
+/// Reads it or ends the program with status 2 and a message.
+Input load(const std::filesystem::path& capture_dir, const Paths& models);
+
+/// A pose off by exactly that much: turned about the point 1.3 m ahead of the sensor about a random axis,
+/// shifted in a random direction.
+Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random);
+
+double median(std::vector<double> values);
+
+struct FineOptions {
+  std::filesystem::path capture_dir;
+  Paths models;
+  std::string around;  ///< pose file to start around instead of truth.json
+  double offset_mm = 40, offset_deg = 4;
+  std::uint64_t seed = 1;
+  int runs = 1;
+  bool depth_only = false;
+  bool vary = false;  ///< another random guess for every run
+};
+int run_fine(const FineOptions& options);
+
+struct RenderOptions {
+  std::filesystem::path urdf;
+  Paths models;
+  double distance_m = 1.34;
+  int runs = 200;
+};
+int run_render(const RenderOptions& options);
+
+}  // namespace calibrd::bench

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "bench.hpp"
+#include "core/calibration/model_views.hpp"
+#include "core/capture/pose_json.hpp"
+
+namespace calibrd::bench {
+namespace {
+
+[[noreturn]] void stop(const Error& error) {
+  std::fprintf(stderr, "calibrd-bench: %s\n", error.message().c_str());
+  std::exit(2);
+}
+
+Eigen::Vector3d random_direction(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+}
+
+}  // namespace
+
+Input load(const std::filesystem::path& capture_dir, const Paths& models) {
+  auto capture = read_capture(capture_dir, models);
+  if (!capture) stop(capture.error());
+  RobotModelOptions options{models, capture->base_link};
+  options.search_paths.insert(options.search_paths.begin(), capture_dir);
+  auto robot = RobotModel::load(capture->urdf, options);
+  if (!robot) stop(robot.error());
+  const CameraModel camera = capture->camera;
+  auto views = views_in_model_order(*robot, std::move(*capture));
+  if (!views) stop(views.error());
+  Input input{std::move(*robot), camera, std::move(*views), std::nullopt};
+  if (auto truth = read_pose((capture_dir / "truth.json").string())) input.truth_T_base_sensor = *truth;
+  return input;
+}
+
+Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random) {
+  const Eigen::Vector3d ahead(0, 0, 1.3);
+  return turned_about(T_base_sensor, ahead, angle_rad * random_direction(random),
+                      offset_m * random_direction(random));
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+}  // namespace calibrd::bench
