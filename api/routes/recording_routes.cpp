@@ -75,8 +75,9 @@ Response cloud_response(const Cloud& cloud) {
   Response response{200, {{"Content-Type", "application/x-ply"}, {"Cache-Control", "no-store"}}, {}};
   std::vector<std::string> comments;
   for (const auto& [name, value] : provenance(cloud)) {
-    response.headers.emplace_back("Calibrd-" + name, value);
-    comments.push_back("Calibrd-" + name + " " + value);
+    auto labelled = std::string("Calibrd-").append(name);
+    comments.push_back(labelled + " " + value);
+    response.headers.emplace_back(std::move(labelled), value);
   }
   response.body = write_ply(cloud.points, cloud.residual_m, comments);
   return response;
