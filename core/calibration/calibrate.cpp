@@ -13,18 +13,23 @@
 namespace calibrd {
 namespace {
 
-std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camera, std::span<const View> views) {
-  if (views.empty()) return Reason{"no_views", "there is no view to calibrate from; record at least one posture"};
+std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camera,
+                               std::span<const View> views) {
+  if (views.empty())
+    return Reason{"no_views", "there is no view to calibrate from; record at least one posture"};
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const View& view = views[i];
     const std::string name = "view " + std::to_string(i);
-    if (view.depth.width != camera.width || view.depth.height != camera.height || view.depth.raw.size() != pixels)
+    if (view.depth.width != camera.width || view.depth.height != camera.height ||
+        view.depth.raw.size() != pixels)
       return Reason{"wrong_image_size", name + ": the depth image has not the size of the camera model"};
-    if (view.image && (view.image->width != camera.width || view.image->height != camera.height || view.image->pixels.size() != pixels))
+    if (view.image && (view.image->width != camera.width || view.image->height != camera.height ||
+                       view.image->pixels.size() != pixels))
       return Reason{"wrong_image_size", name + ": the image has not the size of the camera model"};
     if (view.joint_positions_rad.size() != robot.position_count())
-      return Reason{"wrong_joint_count", name + ": the robot model needs " + std::to_string(robot.position_count()) + " joint positions"};
+      return Reason{"wrong_joint_count", name + ": the robot model needs " +
+                                             std::to_string(robot.position_count()) + " joint positions"};
     if (!std::ranges::all_of(view.joint_positions_rad, [](double q) { return std::isfinite(q); }))
       return Reason{"joint_not_finite", name + ": a joint position is not a finite number"};
     if (std::ranges::all_of(view.depth.raw, [](std::uint16_t raw) { return raw == 0; }))
@@ -47,7 +52,9 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
   if (!settings.guess_T_base_sensor)
-    return rejected({"guess_needed", "this version needs a rough pose (some centimetres, some degrees) to start from"}, views.size());
+    return rejected(
+        {"guess_needed", "this version needs a rough pose (some centimetres, some degrees) to start from"},
+        views.size());
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
 
   const VirtualCell cell(robot);
@@ -68,7 +75,8 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
   result.views = static_cast<int>(views.size());
   result.used_guess = true;
   judge(refined, {}, result);
-  result.time_total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  result.time_total_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 

@@ -36,7 +36,9 @@ inline std::error_code make_error_code(CaptureError error) {
   return {static_cast<int>(error), capture_error_category()};
 }
 
-inline Error fail(CaptureError error, std::string detail) { return {make_error_code(error), std::move(detail)}; }
+inline Error fail(CaptureError error, std::string detail) {
+  return {make_error_code(error), std::move(detail)};
+}
 
 }  // namespace calibrd
 

@@ -27,7 +27,8 @@ class Node {
   Result<double> number(std::string_view key) const {
     const json::value* value = object_.if_contains(key);
     if (value == nullptr) return fail(CaptureError::missing_key, name(key));
-    if (!value->is_number() || !std::isfinite(value->to_number<double>())) return fail(CaptureError::bad_value, name(key));
+    if (!value->is_number() || !std::isfinite(value->to_number<double>()))
+      return fail(CaptureError::bad_value, name(key));
     return value->to_number<double>();
   }
   Result<std::string> text(std::string_view key) const {
@@ -60,7 +61,8 @@ class Node {
 
 Result<json::object> read_document(const fs::path& capture_dir) {
   std::error_code ignored;
-  if (!fs::is_directory(capture_dir, ignored)) return fail(CaptureError::no_such_folder, capture_dir.string());
+  if (!fs::is_directory(capture_dir, ignored))
+    return fail(CaptureError::no_such_folder, capture_dir.string());
   const fs::path path = capture_dir / "capture.json";
   std::ifstream file(path);
   if (!file) return fail(CaptureError::unreadable, path.string());
@@ -74,11 +76,11 @@ Result<json::object> read_document(const fs::path& capture_dir) {
 }
 
 /// Stores the value of `expression` (a Result) in `target`, or returns its error from the calling function.
-#define CALIBRD_TAKE(target, expression)       \
-  {                                            \
-    auto taken_ = (expression);                \
-    if (!taken_) return taken_.error();        \
-    (target) = std::move(taken_).value();      \
+#define CALIBRD_TAKE(target, expression)  \
+  {                                       \
+    auto taken_ = (expression);           \
+    if (!taken_) return taken_.error();   \
+    (target) = std::move(taken_).value(); \
   }
 
 Result<std::array<double, 5>> read_distortion(const Node& sensor) {
@@ -86,7 +88,8 @@ Result<std::array<double, 5>> read_distortion(const Node& sensor) {
   if (!sensor.has("distortion")) return distortion;
   auto list = sensor.array("distortion");
   if (!list) return list.error();
-  if ((*list)->size() != distortion.size()) return fail(CaptureError::bad_value, sensor.name("distortion") + " (k1, k2, p1, p2, k3)");
+  if ((*list)->size() != distortion.size())
+    return fail(CaptureError::bad_value, sensor.name("distortion") + " (k1, k2, p1, p2, k3)");
   for (std::size_t i = 0; i < distortion.size(); ++i) {
     const json::value& value = (**list)[i];
     if (!value.is_number() || !std::isfinite(value.to_number<double>()))
@@ -106,9 +109,11 @@ Result<CameraModel> read_camera(const Node& sensor) {
   CALIBRD_TAKE(camera.cx, sensor.number("cx"));
   CALIBRD_TAKE(camera.cy, sensor.number("cy"));
   CALIBRD_TAKE(camera.distortion, read_distortion(sensor));
-  if (!(width >= 8 && width <= 8192 && height >= 8 && height <= 8192) || width != std::floor(width) || height != std::floor(height))
+  if (!(width >= 8 && width <= 8192 && height >= 8 && height <= 8192) || width != std::floor(width) ||
+      height != std::floor(height))
     return fail(CaptureError::bad_value, sensor.name("width/height") + " (8 to 8192 pixels)");
-  if (!(camera.fx > 0) || !(camera.fy > 0)) return fail(CaptureError::bad_value, sensor.name("fx/fy") + " (must be above 0)");
+  if (!(camera.fx > 0) || !(camera.fy > 0))
+    return fail(CaptureError::bad_value, sensor.name("fx/fy") + " (must be above 0)");
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
   return camera;
@@ -117,8 +122,8 @@ Result<CameraModel> read_camera(const Node& sensor) {
 Status check_size(const PngImage& image, const CameraModel& camera, const fs::path& path) {
   if (image.width == camera.width && image.height == camera.height) return Done{};
   return fail(CaptureError::wrong_image_size,
-              path.string() + " (" + std::to_string(image.width) + "x" + std::to_string(image.height) + ", expected " +
-                  std::to_string(camera.width) + "x" + std::to_string(camera.height) + ")");
+              path.string() + " (" + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                  ", expected " + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ")");
 }
 
 Result<std::vector<double>> read_joints(const Node& frame, std::size_t count) {
@@ -131,19 +136,22 @@ Result<std::vector<double>> read_joints(const Node& frame, std::size_t count) {
       return fail(CaptureError::wrong_joint_count, frame.name("joint_positions_rad"));
   }
   if (positions.size() != count)
-    return fail(CaptureError::wrong_joint_count, frame.name("joint_positions_rad") + " (" + std::to_string(positions.size()) +
-                                                     " values for " + std::to_string(count) + " joint names)");
+    return fail(CaptureError::wrong_joint_count, frame.name("joint_positions_rad") + " (" +
+                                                     std::to_string(positions.size()) + " values for " +
+                                                     std::to_string(count) + " joint names)");
   return positions;
 }
 
-Result<View> read_view(const Node& frame, const fs::path& capture_dir, const Capture& capture, double depth_scale_m) {
+Result<View> read_view(const Node& frame, const fs::path& capture_dir, const Capture& capture,
+                       double depth_scale_m) {
   View view;
   std::string name;
   CALIBRD_TAKE(name, frame.text("depth"));
   PngImage depth;
   CALIBRD_TAKE(depth, read_png(capture_dir / name));
   if (auto ok = check_size(depth, capture.camera, capture_dir / name); !ok) return ok.error();
-  if (depth.bit_depth != 16 || depth.channels != 1) return fail(CaptureError::wrong_bit_depth, (capture_dir / name).string());
+  if (depth.bit_depth != 16 || depth.channels != 1)
+    return fail(CaptureError::wrong_bit_depth, (capture_dir / name).string());
   view.depth = {depth.width, depth.height, depth_scale_m, std::move(depth.pixels)};
   if (frame.has("image")) {
     CALIBRD_TAKE(name, frame.text("image"));
@@ -157,7 +165,8 @@ Result<View> read_view(const Node& frame, const fs::path& capture_dir, const Cap
   return view;
 }
 
-Result<fs::path> find_urdf(const std::string& name, const fs::path& capture_dir, std::span<const fs::path> models) {
+Result<fs::path> find_urdf(const std::string& name, const fs::path& capture_dir,
+                           std::span<const fs::path> models) {
   std::vector<fs::path> places{capture_dir};
   places.insert(places.end(), models.begin(), models.end());
   constexpr std::string_view kPackage = "package://";
@@ -167,12 +176,14 @@ Result<fs::path> find_urdf(const std::string& name, const fs::path& capture_dir,
     if (fs::is_regular_file(place / relative, ignored)) return place / relative;
     // `--models` may name the package's own folder rather than the one it lies in.
     const fs::path own = place.parent_path() / relative;
-    if (relative.starts_with(place.filename().string() + "/") && fs::is_regular_file(own, ignored)) return own;
+    if (relative.starts_with(place.filename().string() + "/") && fs::is_regular_file(own, ignored))
+      return own;
   }
   return fail(CaptureError::urdf_not_found, name);
 }
 
-Status read_robot(const Node& robot, const fs::path& capture_dir, std::span<const fs::path> models, Capture& capture) {
+Status read_robot(const Node& robot, const fs::path& capture_dir, std::span<const fs::path> models,
+                  Capture& capture) {
   std::string urdf;
   CALIBRD_TAKE(urdf, robot.text("urdf"));
   CALIBRD_TAKE(capture.urdf, find_urdf(urdf, capture_dir, models));
@@ -221,7 +232,8 @@ Result<Capture> read_capture(const fs::path& capture_dir, std::span<const fs::pa
   CALIBRD_TAKE(capture.camera, read_camera(*sensor));
   double depth_scale_m = 0;
   CALIBRD_TAKE(depth_scale_m, sensor->number("depth_scale_m"));
-  if (!(depth_scale_m > 0 && depth_scale_m <= 1)) return fail(CaptureError::bad_value, sensor->name("depth_scale_m"));
+  if (!(depth_scale_m > 0 && depth_scale_m <= 1))
+    return fail(CaptureError::bad_value, sensor->name("depth_scale_m"));
   if (auto ok = read_views(root, capture_dir, depth_scale_m, capture); !ok) return ok.error();
   return capture;
 }

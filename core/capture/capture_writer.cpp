@@ -22,9 +22,14 @@ std::string numbered(const char* stem, std::size_t index) {
 
 json::object describe_sensor(const Capture& capture) {
   const CameraModel& c = capture.camera;
-  return {{"id", capture.sensor_id}, {"width", c.width}, {"height", c.height},
-          {"fx", c.fx},             {"fy", c.fy},       {"cx", c.cx},
-          {"cy", c.cy},             {"distortion", json::value_from(c.distortion)},
+  return {{"id", capture.sensor_id},
+          {"width", c.width},
+          {"height", c.height},
+          {"fx", c.fx},
+          {"fy", c.fy},
+          {"cx", c.cx},
+          {"cy", c.cy},
+          {"distortion", json::value_from(c.distortion)},
           {"depth_scale_m", capture.views.empty() ? 0.001 : capture.views.front().depth.scale_m}};
 }
 
@@ -36,7 +41,8 @@ json::object describe_robot(const Capture& capture, const std::string& urdf_refe
 
 Result<json::object> write_view(const fs::path& folder, const View& view, std::size_t index) {
   const std::string depth = numbered("depth", index), image = numbered("image", index);
-  if (auto ok = write_png16(folder / depth, view.depth.width, view.depth.height, view.depth.raw); !ok) return ok.error();
+  if (auto ok = write_png16(folder / depth, view.depth.width, view.depth.height, view.depth.raw); !ok)
+    return ok.error();
   json::object frame{{"depth", depth},
                      {"joint_positions_rad", json::value_from(view.joint_positions_rad)},
                      {"stamp_s", view.stamp_s}};

@@ -10,8 +10,8 @@
 
 namespace calibrd {
 
-/// A decoded PNG: one 16-bit value per pixel, row-major. 8-bit files keep their values (0..255); colour is turned
-/// into luminance (BT.601).
+/// A decoded PNG: one 16-bit value per pixel, row-major. 8-bit files keep their values (0..255); colour is
+/// turned into luminance (BT.601).
 struct PngImage {
   int width = 0;
   int height = 0;
@@ -24,6 +24,7 @@ struct PngImage {
 Result<PngImage> read_png(const std::filesystem::path& path);
 
 /// Single-channel 16-bit PNG. pixels: width*height values. Errors: CaptureError::unwritable.
-Status write_png16(const std::filesystem::path& path, int width, int height, std::span<const std::uint16_t> pixels);
+Status write_png16(const std::filesystem::path& path, int width, int height,
+                   std::span<const std::uint16_t> pixels);
 
 }  // namespace calibrd

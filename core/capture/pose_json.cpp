@@ -33,7 +33,8 @@ bool collect_numbers(const json::value& value, std::vector<double>& numbers) {
 Result<Pose> pose_from_numbers(const std::vector<double>& m, const std::string& name) {
   const bool full = m.size() == 16;
   if (m.size() != 12 && !full)
-    return fail(CaptureError::bad_pose_file, name + ": T_base_sensor holds " + std::to_string(m.size()) + " numbers");
+    return fail(CaptureError::bad_pose_file,
+                name + ": T_base_sensor holds " + std::to_string(m.size()) + " numbers");
   if (full && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1))
     return fail(CaptureError::bad_pose_file, name + ": the last row of T_base_sensor is not 0 0 0 1");
   Eigen::Matrix3d R;
@@ -61,7 +62,8 @@ Result<Pose> pose_from_list(const std::string& text) {
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used == 0 || field.find_first_not_of(" \t", used) != std::string::npos || !std::isfinite(numbers.back()))
+    if (used == 0 || field.find_first_not_of(" \t", used) != std::string::npos ||
+        !std::isfinite(numbers.back()))
       return fail(CaptureError::bad_pose_file, text);
   }
   if (numbers.size() != 7) return fail(CaptureError::bad_pose_file, text);
@@ -79,7 +81,8 @@ Result<Pose> parse_pose_json(std::string_view json_text, const std::string& name
   boost::system::error_code error;
   const json::value document = json::parse(json_text, error);
   if (error) return fail(CaptureError::bad_pose_file, name + " (" + error.message() + ")");
-  const json::value* matrix = document.is_object() ? document.get_object().if_contains("T_base_sensor") : nullptr;
+  const json::value* matrix =
+      document.is_object() ? document.get_object().if_contains("T_base_sensor") : nullptr;
   std::vector<double> numbers;
   if (matrix == nullptr || !collect_numbers(*matrix, numbers)) return fail(CaptureError::bad_pose_file, name);
   return pose_from_numbers(numbers, name);
