@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> provenance(const Cloud& cloud) 
   if (!cloud.joint_positions_rad.empty()) {
     std::string joints;
     for (const double position : cloud.joint_positions_rad)
-      joints += (joints.empty() ? "" : " ") + number(position);
+      joints.append(joints.empty() ? "" : " ").append(number(position));
     lines.emplace_back("Joint-Positions", joints);
   }
   if (cloud.frame_stamp_ns) lines.emplace_back("Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
