@@ -35,9 +35,9 @@ json::array covariance_json(const Matrix6d& covariance) {
 json::object depth_correction_json(const DepthCorrection& correction) {
   return {{"scale", correction.scale},
           {"offset_m", correction.offset_m},
-          {"periodic_amplitude_m", correction.periodic_amplitude_m},
+          {"periodic_sin_m", correction.periodic_sin_m},
           {"periodic_period_m", correction.periodic_period_m},
-          {"periodic_phase_rad", correction.periodic_phase_rad}};
+          {"periodic_cos_m", correction.periodic_cos_m}};
 }
 
 json::array reasons_json(const std::vector<Reason>& reasons) {
@@ -50,9 +50,9 @@ DepthCorrection depth_correction_of(const json::object& object) {
   DepthCorrection correction;
   correction.scale = number_or(object, "scale", 1);
   correction.offset_m = number_or(object, "offset_m", 0);
-  correction.periodic_amplitude_m = number_or(object, "periodic_amplitude_m", 0);
+  correction.periodic_sin_m = number_or(object, "periodic_sin_m", 0);
   correction.periodic_period_m = number_or(object, "periodic_period_m", 0);
-  correction.periodic_phase_rad = number_or(object, "periodic_phase_rad", 0);
+  correction.periodic_cos_m = number_or(object, "periodic_cos_m", 0);
   return correction;
 }
 
