@@ -35,7 +35,7 @@ class Recording(CellTest):
                       {"postures": POSTURES, "timeout_s": 120, "note": "end to end"}, timeout_s=150)
         self.assertEqual(answer.status, 200, answer.body[:500])
         with tarfile.open(fileobj=io.BytesIO(answer.body)) as archive:
-            archive.extractall(self.folder / "capture", filter="data")
+            archive.extractall(self.folder / "capture")
         self.capture = next((self.folder / "capture").rglob("capture.json")).parent
         self.true_pose = simulator.true_pose()
         guess = multiply(multiply(shift((0.02, -0.02, 0.01)), self.true_pose), axis_turn((1, 2, 0), 0.03))
