@@ -15,16 +15,16 @@ namespace calibrd {
 /// A recording in the capture/1 format: a folder with capture.json and 16-bit PNG images (docs/capture.md).
 struct Capture {
   std::string note;
-  std::filesystem::path urdf;            ///< where the robot model lies, resolved to an existing file by read_capture
-  std::string base_link;                 ///< empty: the URDF's root
+  std::filesystem::path urdf;  ///< where the robot model lies, resolved to an existing file by read_capture
+  std::string base_link;       ///< empty: the URDF's root
   std::vector<std::string> joint_names;  ///< order of joint_positions_rad in every view of `views`
   std::string sensor_id;
   CameraModel camera;
   std::vector<View> views;
 };
 
-/// Reads CAPTURE_DIR/capture.json and its images. `models`: folders to look the URDF and its meshes up in, after
-/// the capture itself. Errors: CaptureError, each naming the file or key at fault.
+/// Reads CAPTURE_DIR/capture.json and its images. `models`: folders to look the URDF and its meshes up in,
+/// after the capture itself. Errors: CaptureError, each naming the file or key at fault.
 Result<Capture> read_capture(const std::filesystem::path& capture_dir,
                              std::span<const std::filesystem::path> models);
 

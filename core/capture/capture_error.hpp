@@ -12,6 +12,8 @@ namespace calibrd {
 enum class CaptureError {
   no_such_folder = 1,
   unreadable,
+  file_too_large,
+  path_outside,
   bad_json,
   wrong_format,
   missing_key,
@@ -36,7 +38,9 @@ inline std::error_code make_error_code(CaptureError error) {
   return {static_cast<int>(error), capture_error_category()};
 }
 
-inline Error fail(CaptureError error, std::string detail) { return {make_error_code(error), std::move(detail)}; }
+inline Error fail(CaptureError error, std::string detail) {
+  return {make_error_code(error), std::move(detail)};
+}
 
 }  // namespace calibrd
 

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/geometry/camera_model.hpp"
 
 namespace calibrd {
 
-/// A decoded PNG: one 16-bit value per pixel, row-major. 8-bit files keep their values (0..255); colour is turned
-/// into luminance (BT.601).
+/// A decoded PNG: one 16-bit value per pixel, row-major. 8-bit files keep their values (0..255); colour is
+/// turned into luminance (BT.601).
 struct PngImage {
   int width = 0;
   int height = 0;
@@ -20,10 +21,14 @@ struct PngImage {
   std::vector<std::uint16_t> pixels;
 };
 
-/// Errors: CaptureError::unreadable, bad_png. Images beyond 64 megapixels are refused.
-Result<PngImage> read_png(const std::filesystem::path& path);
+/// Given a camera, the image must be of its size; that is checked before anything is unpacked.
+/// Errors: CaptureError::unreadable, file_too_large, bad_png (also beyond 8192 pixels a side),
+/// wrong_image_size.
+Result<PngImage> read_png(const std::filesystem::path& path, const CameraModel* camera = nullptr);
 
-/// Single-channel 16-bit PNG. pixels: width*height values. Errors: CaptureError::unwritable.
-Status write_png16(const std::filesystem::path& path, int width, int height, std::span<const std::uint16_t> pixels);
+/// Single-channel 16-bit PNG. pixels: width*height values. Errors: CaptureError::unwritable (also when the
+/// number of pixels is another).
+Status write_png16(const std::filesystem::path& path, int width, int height,
+                   std::span<const std::uint16_t> pixels);
 
 }  // namespace calibrd
