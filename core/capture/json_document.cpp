@@ -41,8 +41,7 @@ Result<json::value> parse_json(std::string_view text, const std::string& name, C
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   json::stream_parser parser;
   boost::system::error_code error;
-  std::size_t place = parser.write_some(text.data(), text.size(), error);
-  if (!error && place < text.size()) error = json::make_error_code(json::error::extra_data);
+  const std::size_t place = parser.write(text.data(), text.size(), error);
   if (!error) parser.finish(error);
   if (error) return fail(code, name + " (" + line_and_column(text, place) + ": " + error.message() + ")");
   return parser.release();

@@ -99,6 +99,7 @@ TEST(PoseJson, OtherShapesAreRefused) {
       R"({"T_base_sensor": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]})");  // twelve numbers, but of 4x3
   refused(R"({"T_base_sensor": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})");
   refused(R"({"T_base_sensor": [[1, 0, 0, 0, 0, 1, 0, 0], [0, 0, 1, 0]]})");
+  refused(R"({"T_base_sensor": [[1, 0, 0, 0, 0, 1, 0, 0], [0, 0, 1, 0], []]})");
   refused(R"({"T_base_sensor": [[[1, 0, 0, 0]], [0, 1, 0, 0], [0, 0, 1, 0]]})");
   refused(R"({"T_base_sensor": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]})");
   refused(R"({"T_base_sensor": []})");
