@@ -7,24 +7,30 @@
 #include <cmath>
 
 #include "core/calibration/verdict.hpp"
+#include "core/paper/paper_method.hpp"
 #include "core/registration/coarse_align.hpp"
 #include "core/registration/refine.hpp"
 
 namespace calibrd {
 namespace {
 
-std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camera, std::span<const View> views) {
-  if (views.empty()) return Reason{"no_views", "there is no view to calibrate from; record at least one posture"};
+std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camera,
+                               std::span<const View> views) {
+  if (views.empty())
+    return Reason{"no_views", "there is no view to calibrate from; record at least one posture"};
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const View& view = views[i];
     const std::string name = "view " + std::to_string(i);
-    if (view.depth.width != camera.width || view.depth.height != camera.height || view.depth.raw.size() != pixels)
+    if (view.depth.width != camera.width || view.depth.height != camera.height ||
+        view.depth.raw.size() != pixels)
       return Reason{"wrong_image_size", name + ": the depth image has not the size of the camera model"};
-    if (view.image && (view.image->width != camera.width || view.image->height != camera.height || view.image->pixels.size() != pixels))
+    if (view.image && (view.image->width != camera.width || view.image->height != camera.height ||
+                       view.image->pixels.size() != pixels))
       return Reason{"wrong_image_size", name + ": the image has not the size of the camera model"};
     if (view.joint_positions_rad.size() != robot.position_count())
-      return Reason{"wrong_joint_count", name + ": the robot model needs " + std::to_string(robot.position_count()) + " joint positions"};
+      return Reason{"wrong_joint_count", name + ": the robot model needs " +
+                                             std::to_string(robot.position_count()) + " joint positions"};
     if (!std::ranges::all_of(view.joint_positions_rad, [](double q) { return std::isfinite(q); }))
       return Reason{"joint_not_finite", name + ": a joint position is not a finite number"};
     if (std::ranges::all_of(view.depth.raw, [](std::uint16_t raw) { return raw == 0; }))
@@ -40,16 +46,25 @@ CalibrationResult rejected(Reason reason, std::size_t views) {
   return result;
 }
 
-}  // namespace
+/// The published method knows no uncertainty and no verdict of its own: its pose is never more than uncertain.
+CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
+                                     const Pose& guess) {
+  const auto fit = fit_by_paper(robot, camera, views.front(), guess, {});
+  if (!fit) return rejected({"robot_not_found", "no measured points near the robot; is the guess right?"}, 1);
+  CalibrationResult result;
+  result.verdict = Verdict::uncertain;
+  result.T_base_sensor = fit->T_base_sensor;
+  result.residual_rms_m = fit->rms_m;
+  result.views = 1;
+  result.reasons.push_back({"paper_method", "the paper's method gives no uncertainty; its pose is for comparison only"});
+  if (!fit->converged) result.reasons.push_back({"not_converged", "ICP ended before its correspondences settled"});
+  if (views.size() > 1) result.reasons.push_back({"first_view_only", "the paper's method uses one posture: the first view"});
+  return result;
+}
 
-CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
-                            const CalibrationSettings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
-  if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
-  if (!settings.guess_T_base_sensor)
-    return rejected({"guess_needed", "this version needs a rough pose (some centimetres, some degrees) to start from"}, views.size());
+CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
+                                    const CalibrationSettings& settings) {
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
-
   const VirtualCell cell(robot);
   PrepareSettings prepare;
   prepare.use_images = !settings.depth_only;
@@ -66,9 +81,26 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
 
   CalibrationResult result;
   result.views = static_cast<int>(views.size());
-  result.used_guess = true;
   judge(refined, {}, result);
-  result.time_total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace
+
+CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
+                            const CalibrationSettings& settings) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
+  if (!settings.guess_T_base_sensor)
+    return rejected(
+        {"guess_needed", "this version needs a rough pose (some centimetres, some degrees) to start from"},
+        views.size());
+  CalibrationResult result = settings.method == Method::paper
+                                 ? calibrate_by_paper(robot, camera, views, *settings.guess_T_base_sensor)
+                                 : calibrate_in_full(robot, camera, views, settings);
+  result.used_guess = true;
+  result.time_total_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 

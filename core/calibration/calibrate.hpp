@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/robot/robot_model.hpp"
+#include "core/sensing/depth_correction.hpp"
 
 namespace calibrd {
 
@@ -24,21 +26,13 @@ struct Reason {
   std::string text;
 };
 
-/// z_measured = scale * z_true + offset_m + amplitude_m * sin(2*pi*z_true/period_m + phase_rad).
-struct DepthCorrection {
-  double scale = 1;
-  double offset_m = 0;
-  double periodic_amplitude_m = 0;
-  double periodic_period_m = 0;  ///< 0: no periodic term was estimated
-  double periodic_phase_rad = 0;
-};
-
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
-  bool depth_only = false;                        ///< leave the images of the views aside
-  std::function<void(double)> on_progress;        ///< called with 0..1 from the calling thread
-  const std::atomic<bool>* cancelled = nullptr;   ///< polled; when true, calibrate returns early as rejected/"cancelled"
+  bool depth_only = false;                  ///< leave the images of the views aside
+  std::function<void(double)> on_progress;  ///< called with 0..1 from the calling thread
+  const std::atomic<bool>* cancelled =
+      nullptr;  ///< polled; when true, calibrate returns early as rejected/"cancelled"
 };
 
 /// How one calibration went. A rejected one carries no pose; an uncertain one carries its best.
@@ -46,21 +40,23 @@ struct CalibrationResult {
   Verdict verdict = Verdict::rejected;
   std::optional<Pose> T_base_sensor;
   /// Covariance of (δω rad, δt m), see perturbed(): about the sensor origin, base axes.
-  Matrix6d covariance = Matrix6d::Zero();
-  double sigma_position_m = 0;    ///< sqrt of the trace of the translation block
-  double sigma_rotation_rad = 0;  ///< sqrt of the trace of the rotation block
+  /// A metre and a radian in every direction until something is known: 0 would claim certainty.
+  Matrix6d covariance = Matrix6d::Identity();
+  double sigma_position_m = std::sqrt(3.0);    ///< sqrt of the trace of the translation block
+  double sigma_rotation_rad = std::sqrt(3.0);  ///< sqrt of the trace of the rotation block
   DepthCorrection depth_correction;
   double residual_rms_m = 0;
-  double coverage = 0;  ///< share of the robot pixels predicted visible that the measurement agrees with, 0..1
+  double coverage =
+      0;  ///< share of the robot pixels predicted visible that the measurement agrees with, 0..1
   int views = 0;
   bool used_guess = false;
   std::vector<Reason> reasons;
   double time_total_ms = 0;
 };
 
-/// Finds T_base_sensor from one or more views. Never throws on bad data: it returns a rejected result with reasons.
-/// Needs: every view of the camera's size, joint_positions_rad of RobotModel::position_count() values.
-/// Thread-safe: concurrent calls share nothing.
+/// Finds T_base_sensor from one or more views. Never throws on bad data: it returns a rejected result with
+/// reasons. Needs: every view of the camera's size, joint_positions_rad of RobotModel::position_count()
+/// values. Thread-safe: concurrent calls share nothing.
 CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
                             const CalibrationSettings& settings);
 

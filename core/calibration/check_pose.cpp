@@ -9,14 +9,14 @@ namespace calibrd {
 namespace {
 
 constexpr std::size_t kMinPixels = 500;
-constexpr double kTolerance_m = 0.02;   // an order above the noise of the sensors we know
+constexpr double kTolerance_m = 0.02;  // an order above the noise of the sensors we know
 constexpr double kMinAgreement = 0.6;
 constexpr float kMinCosine = 0.3F;
 
 }  // namespace
 
-PoseCheck check_pose(VirtualCell& cell, const CameraModel& camera, const View& view, const Pose& T_base_sensor,
-                     const DepthCorrection& correction) {
+PoseCheck check_pose(VirtualCell& cell, const CameraModel& camera, const View& view,
+                     const Pose& T_base_sensor, const DepthCorrection& correction) {
   cell.set_joints(view.joint_positions_rad);
   VirtualMeasurement prediction;
   cell.measure(camera, T_base_sensor, prediction);
@@ -27,7 +27,7 @@ PoseCheck check_pose(VirtualCell& cell, const CameraModel& camera, const View& v
       if (prediction.link[i] < 0 || view.depth.raw[i] == 0) continue;
       const Eigen::Vector3f d = camera.ray(x, y).cast<float>();
       if (-prediction.normal[i].dot(d) < kMinCosine * d.norm()) continue;
-      residuals.push_back(view.depth.depth_m(x, y) - (correction.scale * prediction.depth_m[i] + correction.offset_m));
+      residuals.push_back(view.depth.depth_m(x, y) - correction.measured(prediction.depth_m[i]));
     }
   }
   PoseCheck check;

@@ -16,18 +16,21 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 /// For each joint of the model, its place in the recording.
-Result<std::vector<std::size_t>> find_order(const RobotModel& robot, const std::vector<std::string>& recorded) {
+Result<std::vector<std::size_t>> find_order(const RobotModel& robot,
+                                            const std::vector<std::string>& recorded) {
   const auto& needed = robot.position_names();
   for (const std::string& name : recorded) {
     if (std::ranges::find(needed, name) == needed.end())
       return fail(CaptureError::unknown_joint, "\"" + name + "\" (the model has: " + listed(needed) + ")");
-    if (std::ranges::count(recorded, name) > 1) return fail(CaptureError::duplicate_joint, "\"" + name + "\"");
+    if (std::ranges::count(recorded, name) > 1)
+      return fail(CaptureError::duplicate_joint, "\"" + name + "\"");
   }
   std::vector<std::size_t> order;
   for (const std::string& name : needed) {
     const auto found = std::ranges::find(recorded, name);
     if (found == recorded.end())
-      return fail(CaptureError::missing_joint, "\"" + name + "\" (the recording has: " + listed(recorded) + ")");
+      return fail(CaptureError::missing_joint,
+                  "\"" + name + "\" (the recording has: " + listed(recorded) + ")");
     order.push_back(static_cast<std::size_t>(found - recorded.begin()));
   }
   return order;

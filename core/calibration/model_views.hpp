@@ -9,8 +9,8 @@
 namespace calibrd {
 
 /// The views of a recording with their joints in the order of the robot model.
-/// Errors: CaptureError::unknown_joint (the recording names a joint the model has not), missing_joint (the model
-/// needs a joint the recording has not), duplicate_joint.
+/// Errors: CaptureError::unknown_joint (the recording names a joint the model has not), missing_joint (the
+/// model needs a joint the recording has not), duplicate_joint.
 Result<std::vector<View>> views_in_model_order(const RobotModel& robot, Capture capture);
 
 }  // namespace calibrd

@@ -31,26 +31,39 @@ class Judge {
   void contradictions(const Refinement& r) {
     const double seen_through = share(r.range.seen_through, r.range.measured);
     if (seen_through > settings_.max_seen_through)
-      reject("free_space_violation", percent(seen_through) +
-                 " of the robot's pixels measure the space behind it: the robot is not where this pose puts it");
-    if (result_.coverage < settings_.min_coverage)
-      reject("low_coverage", "only " + percent(result_.coverage) +
-                 " of the robot's visible surface was found in the measurement; is the robot in view and unobstructed, "
-                 "and is the guess within a few centimetres?");
+      reject(
+          "free_space_violation",
+          percent(seen_through) +
+              " of the robot's pixels measure the space behind it: the robot is not where this pose puts it");
+    if (result_.coverage < settings_.least_coverage)
+      reject("robot_not_found", "only " + percent(result_.coverage) +
+                                    " of the robot's visible surface was found in the measurement; is the "
+                                    "robot in view, and is the guess "
+                                    "within a few centimetres and degrees?");
     if (r.residual_rms_m > settings_.max_residual_rms_m)
-      reject("large_residual", "the measured surface stays " + milli(r.residual_rms_m, "mm") + " off the model");
+      reject("large_residual",
+             "the measured surface stays " + milli(r.residual_rms_m, "mm") + " off the model");
     const double edges = share(r.contour.found, r.contour.predicted);
     if (r.contour.predicted > 0 && edges < settings_.min_contour_found)
-      reject("contour_not_found", "only " + percent(edges) +
+      reject("contour_not_found",
+             "only " + percent(edges) +
                  " of the robot's outline has an edge in the image; is the image registered to the depth?");
   }
 
   void doubts(const Refinement& r) {
-    if (!r.converged) doubt("not_converged", "the solution still moved when the iterations ended");
+    if (result_.coverage >= settings_.least_coverage && result_.coverage < settings_.min_coverage)
+      doubt("low_coverage", "only " + percent(result_.coverage) +
+                                " of the robot's visible surface was found in the measurement; clear what "
+                                "stands in front of the robot "
+                                "or add postures");
+    if (r.last_step_sigmas > settings_.max_last_step_sigmas)
+      doubt("not_converged", "the solution still moved when the iterations ended");
     if (result_.sigma_position_m > settings_.max_sigma_position_m)
-      doubt("position_uncertain", "position is known to " + milli(result_.sigma_position_m, "mm") + " only; add postures");
+      doubt("position_uncertain",
+            "position is known to " + milli(result_.sigma_position_m, "mm") + " only; add postures");
     if (result_.sigma_rotation_rad > settings_.max_sigma_rotation_rad)
-      doubt("rotation_uncertain", "rotation is known to " + milli(result_.sigma_rotation_rad, "mrad") + " only; add postures");
+      doubt("rotation_uncertain",
+            "rotation is known to " + milli(result_.sigma_rotation_rad, "mrad") + " only; add postures");
   }
 
  private:
@@ -79,8 +92,9 @@ void judge(const Refinement& refinement, const VerdictSettings& settings, Calibr
 
   if (refinement.range.measured < settings.min_pixels) {
     result.verdict = Verdict::rejected;
-    result.reasons.push_back({"too_few_pixels", "only " + std::to_string(refinement.range.measured) +
-                                                    " robot pixels carry a measurement; bring the robot into view"});
+    result.reasons.push_back(
+        {"too_few_pixels", "only " + std::to_string(refinement.range.measured) +
+                               " robot pixels carry a measurement; bring the robot into view"});
     return;
   }
   result.verdict = Verdict::accepted;

@@ -12,8 +12,8 @@ namespace calibrd {
 /// has made sure of that (robot still, or interpolated with a known offset).
 struct View {
   DepthImage depth;
-  std::optional<GreyImage> image;            ///< same pixel grid as the depth
-  std::vector<double> joint_positions_rad;   ///< RobotModel::position_names() order
+  std::optional<GreyImage> image;           ///< same pixel grid as the depth
+  std::vector<double> joint_positions_rad;  ///< RobotModel::position_names() order
   double stamp_s = 0;
 };
 

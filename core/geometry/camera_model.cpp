@@ -12,7 +12,8 @@ Eigen::Vector2d distort(const std::array<double, 5>& d, double x, double y) {
   const auto& [k1, k2, p1, p2, k3] = d;
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x), y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+          y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
 }
 
 Eigen::Matrix2d distort_jacobian(const std::array<double, 5>& d, double x, double y) {

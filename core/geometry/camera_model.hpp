@@ -6,9 +6,9 @@
 
 namespace calibrd {
 
-/// Pinhole camera with OpenCV's radial-tangential distortion (k1, k2, p1, p2, k3), one grid for depth and image.
-/// Sensor frame: x right, y down, z forward. Pixel centres are whole numbers: pixel (x, y) of the first row is
-/// (x, 0). Lengths in pixels.
+/// Pinhole camera with OpenCV's radial-tangential distortion (k1, k2, p1, p2, k3), one grid for depth and
+/// image. Sensor frame: x right, y down, z forward. Pixel centres are whole numbers: pixel (x, y) of the
+/// first row is (x, 0). Lengths in pixels.
 struct CameraModel {
   int width = 0;
   int height = 0;

@@ -8,8 +8,8 @@ Eigen::Matrix3d exp_so3(const Eigen::Vector3d& rotation_rad) {
   const double angle = rotation_rad.norm();
   if (angle < 1e-12) {
     Eigen::Matrix3d small;
-    small << 1, -rotation_rad.z(), rotation_rad.y(), rotation_rad.z(), 1, -rotation_rad.x(), -rotation_rad.y(),
-        rotation_rad.x(), 1;
+    small << 1, -rotation_rad.z(), rotation_rad.y(), rotation_rad.z(), 1, -rotation_rad.x(),
+        -rotation_rad.y(), rotation_rad.x(), 1;
     return small;
   }
   return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();

@@ -26,7 +26,8 @@ Pose perturbed(const Pose& T_base_sensor, const Vector6d& delta);
 /// The `delta` with perturbed(from, delta) == to.
 Vector6d difference(const Pose& from, const Pose& to);
 
-/// Turns `T_base_sensor` about the point `pivot_sensor` (m, sensor frame), then moves it by `shift_m` (base axes).
+/// Turns `T_base_sensor` about the point `pivot_sensor` (m, sensor frame), then moves it by `shift_m` (base
+/// axes).
 Pose turned_about(const Pose& T_base_sensor, const Eigen::Vector3d& pivot_sensor,
                   const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& shift_m);
 

@@ -17,7 +17,9 @@ struct Cloud {
   std::vector<Eigen::Vector3f> points;
   // What nanoflann asks for:
   std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -52,15 +54,16 @@ Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const
   return box;
 }
 
-Searchable make_searchable(const RegistrationView& view, const CameraModel& camera, Eigen::AlignedBox3d region,
-                           const CoarseSettings& settings) {
+Searchable make_searchable(const RegistrationView& view, const CameraModel& camera,
+                           Eigen::AlignedBox3d region, const CoarseSettings& settings) {
   constexpr int kStride = 3;
   region.min().array() -= settings.crop_margin_m;
   region.max().array() += settings.crop_margin_m;
   Searchable result{std::make_unique<Cloud>(), nullptr};
   for (int y = 0; y < camera.height; y += kStride) {
     for (int x = 0; x < camera.width; x += kStride) {
-      const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x)];
+      const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                                   static_cast<std::size_t>(x)];
       if (z < region.min().z() || z > region.max().z() || z <= 0) continue;
       const Eigen::Vector3d p = z * camera.ray(x, y);
       if (region.contains(p)) result.cloud->points.push_back(p.cast<float>());
@@ -120,7 +123,8 @@ Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera, 
   });
 
   Pose pose = guess;
-  const double shrink = std::pow(settings.end_kernel_m / settings.start_kernel_m, 1.0 / (settings.iterations - 1));
+  const double shrink =
+      std::pow(settings.end_kernel_m / settings.start_kernel_m, 1.0 / (settings.iterations - 1));
   double kernel_m = settings.start_kernel_m;
   for (int iteration = 0; iteration < settings.iterations; ++iteration, kernel_m *= shrink) {
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {

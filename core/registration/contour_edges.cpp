@@ -2,24 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/registration/contour_edges.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 namespace calibrd {
 namespace {
 
-constexpr int kBlockSide = 24;
+/// Contour points on a block of this side share a cluster: what the light does to one limb's rim it does all
+/// along.
+constexpr int kBlockSide = 64;
 constexpr float kContourStep_m = 0.03F;  // what lies this much further back is beyond the contour
 constexpr float kOccluder_m = 0.05F;     // what was measured this much in front hides the contour
 constexpr int kMargin = 4;
 constexpr double kSampleStep_px = 0.5;
 
 struct ContourPoint {
-  Eigen::Vector2d pixel;      // on the contour, to a fraction of a pixel
-  Eigen::Vector2d outward;    // unit normal in the image
-  Eigen::Vector3d p_sensor;   // on the robot, just inside
+  Eigen::Vector2d pixel;     // on the contour, to a fraction of a pixel
+  Eigen::Vector2d outward;   // unit normal in the image
+  Eigen::Vector3d p_sensor;  // on the robot, just inside
 };
 
 bool beyond(float depth, float contour_depth) { return depth <= 0 || depth > contour_depth + kContourStep_m; }
@@ -40,13 +42,14 @@ std::optional<Eigen::Vector2d> outward_normal(const VirtualMeasurement& m, int x
 }
 
 /// Moves along the normal to where rays stop meeting the robot.
-std::optional<ContourPoint> locate(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
-                                   int x, int y, float z, const Eigen::Vector2d& outward) {
+std::optional<ContourPoint> locate(const RegistrationView& view, const CameraModel& camera,
+                                   const Pose& T_base_sensor, int x, int y, float z,
+                                   const Eigen::Vector2d& outward) {
   constexpr int kBisections = 5;
   const Eigen::Vector2d start(x, y);
   const auto depth_at = [&](double t) {
     const Eigen::Vector2d p = start + t * outward;
-    return view.cell.depth_along(camera.ray(p.x(), p.y()), T_base_sensor);
+    return view.cell.hit_along(camera.ray(p.x(), p.y()), T_base_sensor).depth_m;
   };
   double inside = 0, outside = 1.5;
   float inside_depth = z;
@@ -73,31 +76,40 @@ float bilinear(const std::vector<float>& image, int width, const Eigen::Vector2d
   return (1 - fy) * ((1 - fx) * row[0] + fx * row[1]) + fy * ((1 - fx) * row[width] + fx * row[width + 1]);
 }
 
-/// Signed distance (px, along the normal) from the predicted contour to the image edge that fits it best.
-std::optional<double> find_edge(const RegistrationView& view, const CameraModel& camera, const ContourPoint& point,
-                                const ContourSettings& settings) {
-  const int half = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px));
-  const int samples = 2 * (half + 2) + 1;  // two more on each side for the slope
-  std::array<float, 256> grey{};
-  if (samples > static_cast<int>(grey.size())) return std::nullopt;
-  for (int k = 0; k < samples; ++k) {
-    const Eigen::Vector2d p = point.pixel + kSampleStep_px * (k - half - 2) * point.outward;
-    if (p.x() < 1 || p.y() < 1 || p.x() >= camera.width - 2 || p.y() >= camera.height - 2) return std::nullopt;
-    grey[static_cast<std::size_t>(k)] = bilinear(view.image, camera.width, p);
+/// Grey values along the normal, kSampleStep_px apart, `reach` samples to both sides of the contour.
+std::optional<std::vector<float>> sample_profile(const RegistrationView& view, const CameraModel& camera,
+                                                 const ContourPoint& point, int reach) {
+  std::vector<float> grey(static_cast<std::size_t>(2 * reach + 1));
+  for (int k = -reach; k <= reach; ++k) {
+    const Eigen::Vector2d p = point.pixel + kSampleStep_px * k * point.outward;
+    if (p.x() < 1 || p.y() < 1 || p.x() >= camera.width - 2 || p.y() >= camera.height - 2)
+      return std::nullopt;
+    grey[static_cast<std::size_t>(k + reach)] = bilinear(view.image, camera.width, p);
   }
+  return grey;
+}
+
+/// Signed distance (px, along the normal) from the predicted contour to the strongest near step in the image.
+std::optional<double> find_step(const RegistrationView& view, const CameraModel& camera,
+                                const ContourPoint& point, const ContourSettings& settings) {
+  const int half = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px));
+  const int reach = half + 2;  // two more on each side for the slope
+  const auto grey = sample_profile(view, camera, point, reach);
+  if (!grey) return std::nullopt;
   const auto slope = [&](int k) {  // over two pixels
-    return std::abs(grey[static_cast<std::size_t>(k + 2)] - grey[static_cast<std::size_t>(k - 2)]);
+    return std::abs((*grey)[static_cast<std::size_t>(k + 2)] - (*grey)[static_cast<std::size_t>(k - 2)]);
   };
   const auto threshold = static_cast<float>(settings.min_contrast * view.image_noise);
   std::optional<double> best;
   double best_score = 0;
-  for (int k = 3; k + 3 < samples; ++k) {
+  for (int k = 3; k + 3 < static_cast<int>(grey->size()); ++k) {
     const float here = slope(k), before = slope(k - 1), after = slope(k + 1);
     if (here < threshold || here < before || here <= after) continue;
     const double bend = before - 2.0 * here + after;
     const double top = bend < 0 ? 0.5 * (before - after) / bend : 0.0;
-    const double distance = kSampleStep_px * (k - half - 2 + top);
-    const double score = here * std::exp(-2 * distance * distance / (settings.search_px * settings.search_px));
+    const double distance = kSampleStep_px * (k - reach + top);
+    const double score =
+        here * std::exp(-2 * distance * distance / (settings.search_px * settings.search_px));
     if (score > best_score) {
       best_score = score;
       best = distance;
@@ -106,18 +118,124 @@ std::optional<double> find_edge(const RegistrationView& view, const CameraModel&
   return best;
 }
 
-Observation observe(const ContourPoint& point, double distance_px, const CameraModel& camera, const Pose& T_base_sensor,
-                    const ContourSettings& settings) {
+/// What the image should show along the normal, blurred as it blurs: shares of light that are constant on the
+/// robot, that fall with the cosine of incidence (active illumination dims a round limb towards its rim,
+/// which moves the steepest step up to a pixel inwards), and that come from beyond.
+class ProfileModel {
+ public:
+  static constexpr int kBases = 3;
+  using Row = Eigen::Matrix<double, 1, kBases>;
+
+  ProfileModel(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
+               const ContourPoint& point, double reach_px)
+      : reach_(static_cast<int>(std::ceil((reach_px + kBlurReach_px) / kFine_px))) {
+    std::vector<Row> sharp;
+    const float rim = static_cast<float>(point.p_sensor.z());
+    for (int k = -reach_; k <= reach_; ++k) {
+      const Eigen::Vector2d p = point.pixel + kFine_px * (k + 0.5) * point.outward;
+      const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
+      Row row(0, 0, 1);
+      if (k < 0) {
+        const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
+        if (!beyond(hit.depth_m, rim))
+          row << 1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0;
+      }
+      sharp.push_back(row);
+    }
+    blur(sharp);
+  }
+
+  /// The bases at a distance (px) from the contour, outward positive.
+  Row at(double distance_px) const {
+    const double place = distance_px / kFine_px + reach_ - 0.5;
+    const auto k = std::clamp(static_cast<int>(place), 0, static_cast<int>(blurred_.size()) - 2);
+    const double share = place - k;
+    return (1 - share) * blurred_[static_cast<std::size_t>(k)] +
+           share * blurred_[static_cast<std::size_t>(k) + 1];
+  }
+
+ private:
+  static constexpr double kFine_px = 0.25;
+  static constexpr double kBlur_px =
+      0.78;  // a pixel's width, prepare_views' smoothing and bilinear sampling together
+  static constexpr double kBlurReach_px = 2.5;
+
+  void blur(const std::vector<Row>& sharp) {
+    const int radius = static_cast<int>(kBlurReach_px / kFine_px);
+    std::vector<double> kernel;
+    for (int k = -radius; k <= radius; ++k)
+      kernel.push_back(std::exp(-0.5 * std::pow(k * kFine_px / kBlur_px, 2)));
+    const int last = static_cast<int>(sharp.size()) - 1;
+    for (int i = 0; i <= last; ++i) {
+      Row sum = Row::Zero();
+      double weight = 0;
+      for (int k = -radius; k <= radius; ++k) {
+        sum += kernel[static_cast<std::size_t>(k + radius)] *
+               sharp[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+        weight += kernel[static_cast<std::size_t>(k + radius)];
+      }
+      blurred_.push_back(sum / weight);
+    }
+  }
+
+  int reach_;
+  std::vector<Row> blurred_;
+};
+
+/// Squared misfit of the profile against the model moved outward by `shift_px`, the three shares of light
+/// fitted.
+double misfit(const std::vector<float>& grey, int reach, const ProfileModel& model, double shift_px) {
+  Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double squares = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    const ProfileModel::Row row = model.at(kSampleStep_px * k - shift_px);
+    const double value = grey[static_cast<std::size_t>(k + reach)];
+    normal.noalias() += row.transpose() * row;
+    right += value * row.transpose();
+    squares += value * value;
+  }
+  return squares - right.dot(normal.ldlt().solve(right));
+}
+
+/// Signed distance (px, along the normal) by which the modelled light profile must move to fit the image.
+std::optional<double> fit_profile(const RegistrationView& view, const CameraModel& camera,
+                                  const Pose& T_base_sensor, const ContourPoint& point,
+                                  const ContourSettings& settings) {
+  constexpr double kWindow_px = 4;
+  constexpr double kShiftStep_px = 0.5;
+  const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
+  const auto grey = sample_profile(view, camera, point, reach);
+  if (!grey) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(*grey);
+  if (high - low < settings.min_contrast * view.image_noise) return std::nullopt;
+  const ProfileModel model(view, camera, T_base_sensor, point, kWindow_px + settings.search_px);
+  const int shifts = static_cast<int>(settings.search_px / kShiftStep_px);
+  std::vector<double> costs;
+  for (int k = -shifts; k <= shifts; ++k) costs.push_back(misfit(*grey, reach, model, kShiftStep_px * k));
+  const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
+  if (best == 0 || best + 1 == static_cast<int>(costs.size())) return std::nullopt;
+  const double before = costs[static_cast<std::size_t>(best - 1)],
+               here = costs[static_cast<std::size_t>(best)],
+               after = costs[static_cast<std::size_t>(best + 1)];
+  const double bend = before - 2 * here + after;
+  return kShiftStep_px * (best - shifts + (bend > 0 ? 0.5 * (before - after) / bend : 0.0));
+}
+
+Observation observe(const ContourPoint& point, double distance_px, const CameraModel& camera,
+                    const Pose& T_base_sensor, const ContourSettings& settings) {
   Observation o;
-  o.residual = distance_px;
+  o.residual = distance_px - settings.shift_px;
   o.sigma = settings.sigma_px;
-  const double x = distance_px / settings.kernel_px;
+  const double x = o.residual / settings.kernel_px;
   o.robust_weight = std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
   // The sensor moves by δ: in the image the contour moves by -Jπ Rᵀ (δω×u + δt), seen along its normal.
   const Eigen::Vector3d pull_sensor = camera.projection_jacobian(point.p_sensor).transpose() * point.outward;
   const Eigen::Vector3d a = -(T_base_sensor.linear() * pull_sensor);
   const Eigen::Vector3d u_base = T_base_sensor.linear() * point.p_sensor;
-  o.jacobian << u_base.cross(a), a, 0.0, 0.0;
+  o.jacobian.setZero();
+  o.jacobian.head<6>() << u_base.cross(a), a;
+  o.jacobian[kContourShift] = 1;
   return o;
 }
 
@@ -138,15 +256,15 @@ void ContourTally::merge(const ContourTally& other) {
 }
 
 void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
-                           const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings,
-                           NormalEquations& equations, ContourTally& tally) {
+                           const CameraModel& camera, const Pose& T_base_sensor,
+                           const ContourSettings& settings, NormalEquations& equations, ContourTally& tally) {
   if (view.image.empty()) return;
   const int blocks_per_row = camera.width / kBlockSide + 1;
-  int turn = 0;
   for (int y = kMargin; y + kMargin < camera.height; ++y) {
     for (int x = kMargin; x + kMargin < camera.width; ++x) {
-      if (!is_contour(prediction, x, y) || ++turn % settings.stride != 0) continue;
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+      if ((x + y) % settings.stride != 0 || !is_contour(prediction, x, y)) continue;
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       const float z = prediction.depth_m[i];
       if (view.depth_m[i] > 0 && view.depth_m[i] < z - kOccluder_m) continue;
       const auto outward = outward_normal(prediction, x, y, z);
@@ -154,7 +272,8 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
       const auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
       if (!point) continue;
       ++tally.predicted;
-      const auto distance = find_edge(view, camera, *point, settings);
+      const auto distance = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
+                                                 : find_step(view, camera, *point, settings);
       if (!distance) continue;
       const Observation o = observe(*point, *distance, camera, T_base_sensor, settings);
       if (o.robust_weight <= 0) continue;

@@ -13,7 +13,8 @@ double depth_sigma_m(double z, double cos_incidence, double pixel_m) {
   const double cosine = std::clamp(cos_incidence, 0.05, 1.0);
   const double angle = std::acos(cosine);
   const double rest = std::numbers::pi / 2 - angle;
-  const double axial_mm = 1.5 - 0.5 * z + 0.3 * z * z + 0.1 * std::pow(z, 1.5) * angle * angle / (rest * rest);
+  const double axial_mm =
+      1.5 - 0.5 * z + 0.3 * z * z + 0.1 * std::pow(z, 1.5) * angle * angle / (rest * rest);
   const double slope = std::sqrt(1 - cosine * cosine) / cosine;
   const double lateral_m = kLateralPixels * pixel_m * z * slope;
   return std::hypot(1e-3 * axial_mm, lateral_m);

@@ -7,20 +7,20 @@
 
 namespace calibrd {
 
-/// What is estimated: the pose's δ = (δω, δt) as in perturbed(), then offset (m) and scale - 1 of the range.
-constexpr int kParameters = 8;
-constexpr int kOffset = 6;
-constexpr int kScale = 7;
+/// What is estimated: the pose's δ = (δω, δt) as in perturbed(); offset (m), scale - 1 and the periodic term
+/// of the range (sine and cosine in m, period in m); and how far (px) image edges lie outside the predicted
+/// contours.
+enum Parameter : int { kPose = 0, kOffset = 6, kScale, kSine, kCosine, kPeriod, kContourShift, kParameters };
 using ParameterVector = Eigen::Matrix<double, kParameters, 1>;
 using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;
 
-/// One weighted observation: `jacobian` is the derivative of the *prediction* by the parameters, `residual` is
-/// measured minus predicted, both in the same unit.
+/// One weighted observation: `jacobian` is the derivative of the *prediction* by the parameters, `residual`
+/// is measured minus predicted, both in the same unit.
 struct Observation {
   ParameterVector jacobian;
   double residual = 0;
-  double sigma = 1;         ///< standard deviation of the residual, same unit
-  double robust_weight = 1; ///< 0..1
+  double sigma = 1;          ///< standard deviation of the residual, same unit
+  double robust_weight = 1;  ///< 0..1
 };
 
 /// Gauss-Newton sums over observations. Observations are grouped into clusters whose errors may be correlated
@@ -41,8 +41,8 @@ class NormalEquations {
   std::size_t count() const { return count_; }
   double rms_residual() const;  ///< of inliers, in the unit of the residuals
 
-  /// How many times the scatter of the cluster sums exceeds that of independent observations (1 = independent):
-  /// the factor by which a covariance that assumes independence is too small, at least 1.
+  /// How many times the scatter of the cluster sums exceeds that of independent observations (1 =
+  /// independent): the factor by which a covariance that assumes independence is too small, at least 1.
   double correlation_factor() const;
 
   /// Σ over clusters of g gᵀ: the middle of the sandwich covariance.
@@ -52,8 +52,8 @@ class NormalEquations {
  private:
   struct Cluster {
     ParameterVector gradient = ParameterVector::Zero();
-    double whitened_sum = 0;     // Σ w r/σ
-    double whitened_squares = 0; // Σ (w r/σ)²
+    double whitened_sum = 0;      // Σ w r/σ
+    double whitened_squares = 0;  // Σ (w r/σ)²
   };
   ParameterMatrix information_ = ParameterMatrix::Zero();
   ParameterVector gradient_ = ParameterVector::Zero();

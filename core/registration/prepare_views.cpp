@@ -11,7 +11,8 @@ namespace {
 std::vector<float> to_metres(const DepthImage& depth) {
   std::vector<float> metres(depth.raw.size());
   const auto scale = static_cast<float>(depth.scale_m);
-  std::ranges::transform(depth.raw, metres.begin(), [scale](std::uint16_t raw) { return scale * static_cast<float>(raw); });
+  std::ranges::transform(depth.raw, metres.begin(),
+                         [scale](std::uint16_t raw) { return scale * static_cast<float>(raw); });
   return metres;
 }
 
@@ -20,12 +21,14 @@ std::vector<float> without_mixed_pixels(const std::vector<float>& depth, int wid
   std::vector<float> clean(depth.size(), 0.0F);
   for (int y = 1; y + 1 < height; ++y) {
     for (int x = 1; x + 1 < width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       const float z = depth[i];
       if (z <= 0) continue;
       const auto row = static_cast<std::size_t>(width);
       const auto close = [&](float neighbour) { return neighbour > 0 && std::abs(neighbour - z) < step * z; };
-      if (close(depth[i - 1]) && close(depth[i + 1]) && close(depth[i - row]) && close(depth[i + row])) clean[i] = z;
+      if (close(depth[i - 1]) && close(depth[i + 1]) && close(depth[i - row]) && close(depth[i + row]))
+        clean[i] = z;
     }
   }
   return clean;
@@ -34,17 +37,21 @@ std::vector<float> without_mixed_pixels(const std::vector<float>& depth, int wid
 /// Binomial smoothing (1 2 1) in both directions: enough to take single-pixel noise out of gradients.
 std::vector<float> smoothed(const GreyImage& image) {
   const int w = image.width, h = image.height;
-  const auto at = [w](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x); };
+  const auto at = [w](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+  };
   std::vector<float> rows(image.pixels.size()), out(image.pixels.size());
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) {
       const int left = std::max(x - 1, 0), right = std::min(x + 1, w - 1);
-      rows[at(x, y)] = 0.25F * static_cast<float>(image.pixels[at(left, y)] + 2 * image.pixels[at(x, y)] + image.pixels[at(right, y)]);
+      rows[at(x, y)] = 0.25F * static_cast<float>(image.pixels[at(left, y)] + 2 * image.pixels[at(x, y)] +
+                                                  image.pixels[at(right, y)]);
     }
   }
   for (int y = 0; y < h; ++y) {
     const int up = std::max(y - 1, 0), down = std::min(y + 1, h - 1);
-    for (int x = 0; x < w; ++x) out[at(x, y)] = 0.25F * (rows[at(x, up)] + 2 * rows[at(x, y)] + rows[at(x, down)]);
+    for (int x = 0; x < w; ++x)
+      out[at(x, y)] = 0.25F * (rows[at(x, up)] + 2 * rows[at(x, y)] + rows[at(x, down)]);
   }
   return out;
 }
@@ -68,7 +75,8 @@ std::vector<RegistrationView> prepare_views(const VirtualCell& cell, const Camer
   for (const View& view : views) {
     RegistrationView ready{cell, {}, {}, 0};
     ready.cell.set_joints(view.joint_positions_rad);
-    ready.depth_m = without_mixed_pixels(to_metres(view.depth), camera.width, camera.height, static_cast<float>(settings.mixed_step));
+    ready.depth_m = without_mixed_pixels(to_metres(view.depth), camera.width, camera.height,
+                                         static_cast<float>(settings.mixed_step));
     if (settings.use_images && view.image) {
       ready.image = smoothed(*view.image);
       ready.image_noise = difference_noise(ready.image);

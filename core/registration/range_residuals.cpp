@@ -3,13 +3,15 @@
 #include "core/registration/range_residuals.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/registration/depth_noise.hpp"
 
 namespace calibrd {
 namespace {
 
-/// Pixels on a block of this side share a cluster: their errors (filters, surface texture, mesh errors) correlate.
+/// Pixels on a block of this side share a cluster: their errors (filters, surface texture, mesh errors)
+/// correlate.
 constexpr int kBlockSide = 24;
 /// Predicted depth may step this share of its depth to a neighbour before the pixel counts as rim.
 constexpr float kRimStep = 0.025F;
@@ -18,6 +20,16 @@ double tukey_weight(double residual, double kernel) {
   const double x = residual / kernel;
   if (std::abs(x) >= 1) return 0;
   return (1 - x * x) * (1 - x * x);
+}
+
+/// Derivative of the periodic term by sine, cosine and period.
+Eigen::Vector3d periodic_jacobian(const DepthCorrection& correction, double z) {
+  if (correction.periodic_period_m <= 0) return Eigen::Vector3d::Zero();
+  const double period = correction.periodic_period_m;
+  const double phase = 2 * std::numbers::pi * z / period;
+  const double sine = std::sin(phase), cosine = std::cos(phase);
+  return {sine, cosine,
+          -phase / period * (correction.periodic_sin_m * cosine - correction.periodic_cos_m * sine)};
 }
 
 /// A rim pixel sees the robot's edge: a fraction of a pixel decides what it measures.
@@ -43,14 +55,16 @@ void RangeTally::merge(const RangeTally& other) {
   whitened.insert(whitened.end(), other.whitened.begin(), other.whitened.end());
 }
 
-void add_range_residuals(const RegistrationView& view, const VirtualMeasurement& prediction, const CameraModel& camera,
-                         const Pose& T_base_sensor, const DepthCorrection& correction, const RangeSettings& settings,
-                         NormalEquations& equations, RangeTally& tally) {
+void add_range_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
+                         const CameraModel& camera, const Pose& T_base_sensor,
+                         const DepthCorrection& correction, const RangeSettings& settings,
+                         NormalEquations& equations, RangeTally& tally, std::vector<RangeSample>* samples) {
   const Eigen::Matrix3d R = T_base_sensor.linear();
   const int blocks_per_row = camera.width / kBlockSide + 1;
   for (int y = 0; y < camera.height; y += settings.stride) {
     for (int x = 0; x < camera.width; x += settings.stride) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       if (prediction.link[i] < 0 || is_rim(prediction, x, y)) continue;
       const double z = prediction.depth_m[i];
       const Eigen::Vector3d d = camera.ray(x, y);
@@ -63,19 +77,22 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
       ++tally.measured;
 
       Observation o;
-      o.residual = view.depth_m[i] - (correction.scale * z + correction.offset_m);
+      o.residual = view.depth_m[i] - correction.measured(z);
       if (o.residual > settings.kernel_m) ++tally.seen_through;
       if (o.residual < -settings.kernel_m) ++tally.occluded;
       o.robust_weight = tukey_weight(o.residual, settings.kernel_m);
       if (o.robust_weight <= 0) continue;
       ++tally.agreeing;
-      o.sigma = std::hypot(settings.sigma_factor * depth_sigma_m(z, cos_incidence, 1 / camera.fx), settings.known_bias_sigma_m);
+      o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, 1 / camera.fx);
       tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
 
-      // The sensor moves by δ, the surface stands: along the pixel's ray the depth changes by -(u×n·δω + n·δt)/(n·d).
+      // The sensor moves by δ, the surface stands: along the pixel's ray the depth changes by -(u×n·δω +
+      // n·δt)/(n·d).
       const Eigen::Vector3d n_base = R * n, u_base = R * (z * d);
-      const double factor = -correction.scale / slope;
-      o.jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z;
+      const double factor = -correction.slope(z) / slope;
+      o.jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z),
+          0.0;
+      if (samples != nullptr) samples->push_back({o, z});
       equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
     }
   }

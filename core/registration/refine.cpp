@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/registration/covariance.hpp"
+#include "core/registration/range_period.hpp"
 
 namespace calibrd {
 namespace {
@@ -18,18 +19,21 @@ namespace {
 struct Stage {
   int iterations;
   int stride;
-  double range_kernel_m;   // 0: from the noise found
+  double range_kernel_m;     // 0: from the noise found
   double contour_search_px;  // 0: no contours yet
+  bool fit_profile;          // fit modelled light profiles to the contours rather than find the steepest step
   bool free_bias;
 };
 
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
+constexpr int kFullSteps = 5;
 
 struct Sums {
   NormalEquations range, contour;
   RangeTally range_tally;
   ContourTally contour_tally;
+  std::vector<RangeSample> samples;
 };
 
 /// Robust standard deviation of values that scatter about 0.
@@ -43,39 +47,48 @@ double robust_sigma(std::vector<float> values) {
 
 class Refiner {
  public:
-  Refiner(std::span<RegistrationView> views, const CameraModel& camera, const Pose& start, const RefineSettings& settings)
+  Refiner(std::span<RegistrationView> views, const CameraModel& camera, const Pose& start,
+          const RefineSettings& settings)
       : views_(views), camera_(camera), settings_(settings), predictions_(views.size()) {
     result_.T_base_sensor = start;
   }
 
   Refinement run() {
-    const Stage stages[] = {{6, 2, 0.06, 0, false}, {5, 2, 0.03, 10, true}, {5, 1, 0, 6, true}};
-    const Stage last{settings_.final_iterations, 1, 0, 4, true};
+    const Stage stages[] = {
+        {6, 2, 0.06, 0, false, false}, {5, 2, 0.03, 10, false, true}, {4, 1, 0, 5, false, true}};
+    const Stage last{settings_.final_iterations, 1, 0, 3, true, true};
     double progress = 0;
     for (const Stage& stage : stages) {
-      for (int i = 0; i < stage.iterations && !small_step_; ++i) step(stage);
-      small_step_ = false;
+      run_stage(stage);
       progress += 0.25;
       if (settings_.keep_going && !settings_.keep_going(progress)) return result_;
     }
-    for (int i = 0; i < last.iterations && !small_step_; ++i) step(last);
-    result_.converged = small_step_;
+    step(last, 0);
+    choose_period(last);
+    run_stage(last);
     finish(last);
     return result_;
   }
 
  private:
-  Sums collect(const Stage& stage) {
+  void run_stage(const Stage& stage) {
+    small_step_ = false;
+    for (int i = 0; i < stage.iterations && !small_step_; ++i) step(stage, i);
+  }
+
+  Sums collect(const Stage& stage, bool keep_samples = false) {
     const RangeSettings range = range_settings(stage);
     ContourSettings contour;
     contour.search_px = contour.kernel_px = stage.contour_search_px;
-    contour.stride = stage.stride;
+    contour.stride = 2;
+    contour.fit_profile = stage.fit_profile;
+    contour.shift_px = result_.contour_shift_px;
     std::vector<Sums> per_view(views_.size());
     tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
       views_[v].cell.measure(camera_, result_.T_base_sensor, predictions_[v]);
       Sums& s = per_view[v];
-      add_range_residuals(views_[v], predictions_[v], camera_, result_.T_base_sensor, result_.correction, range, s.range,
-                          s.range_tally);
+      add_range_residuals(views_[v], predictions_[v], camera_, result_.T_base_sensor, result_.correction,
+                          range, s.range, s.range_tally, keep_samples ? &s.samples : nullptr);
       if (stage.contour_search_px > 0)
         add_contour_residuals(views_[v], predictions_[v], camera_, result_.T_base_sensor, contour, s.contour,
                               s.contour_tally);
@@ -86,6 +99,7 @@ class Refiner {
       total.contour.merge(s.contour);
       total.range_tally.merge(s.range_tally);
       total.contour_tally.merge(s.contour_tally);
+      total.samples.insert(total.samples.end(), s.samples.begin(), s.samples.end());
     }
     return total;
   }
@@ -95,56 +109,103 @@ class Refiner {
     range.stride = stage.stride;
     range.sigma_factor = result_.sigma_factor;
     const double noise_m = result_.sigma_factor * 1.6e-3;
-    range.kernel_m = stage.range_kernel_m > 0 ? stage.range_kernel_m : std::clamp(kKernelSigmas * noise_m, kMinKernel_m, 0.04);
+    range.kernel_m = stage.range_kernel_m > 0 ? stage.range_kernel_m
+                                              : std::clamp(kKernelSigmas * noise_m, kMinKernel_m, 0.04);
     return range;
   }
 
   /// Weighs range and contour by what their own scatter says they are worth.
   NormalEquations weighed(const Sums& sums, bool scatter_is_noise) {
-    const double range_scale = robust_sigma(sums.range_tally.whitened);
-    const double contour_scale = std::max(1.0, robust_sigma(sums.contour_tally.whitened));
     if (scatter_is_noise) {
-      result_.sigma_factor = std::clamp(result_.sigma_factor * range_scale, 0.3, 20.0);
       result_.range_correlation = sums.range.correlation_factor();
       result_.contour_correlation = sums.contour.correlation_factor();
     }
-    NormalEquations all = sums.range.scaled(1 / (range_scale * range_scale * result_.range_correlation));
-    all.merge(sums.contour.scaled(1 / (contour_scale * contour_scale * result_.contour_correlation)));
+    NormalEquations all = sums.range.scaled(range_weight(sums));
+    all.merge(contour_part(sums));
+    if (scatter_is_noise)
+      result_.sigma_factor =
+          std::clamp(result_.sigma_factor * robust_sigma(sums.range_tally.whitened), 0.3, 20.0);
     return all;
   }
 
-  ParameterMatrix with_priors(const NormalEquations& all, bool free_bias, ParameterVector& gradient) const {
-    ParameterMatrix information = all.information().selfadjointView<Eigen::Lower>();
-    const double offset_sigma = free_bias ? settings_.offset_prior_m : 1e-6;
-    const double scale_sigma = free_bias ? settings_.scale_prior : 1e-6;
-    information(kOffset, kOffset) += 1 / (offset_sigma * offset_sigma);
-    information(kScale, kScale) += 1 / (scale_sigma * scale_sigma);
-    gradient = all.gradient();
-    gradient[kOffset] -= result_.correction.offset_m / (offset_sigma * offset_sigma);
-    gradient[kScale] -= (result_.correction.scale - 1) / (scale_sigma * scale_sigma);
-    // A faint hold keeps the solution finite in directions that nothing pins; the covariance leaves it out.
+  double range_weight(const Sums& sums) const {
+    const double scale = robust_sigma(sums.range_tally.whitened);
+    return 1 / (scale * scale * result_.range_correlation);
+  }
+
+  NormalEquations contour_part(const Sums& sums) const {
+    const double scale = robust_sigma(sums.contour_tally.whitened);
+    return sums.contour.scaled(1 / (scale * scale * result_.contour_correlation));
+  }
+
+  /// Everything known before the views were seen, as one observation per parameter.
+  void add_priors(const Stage& stage, ParameterMatrix& information, ParameterVector& gradient) const {
+    constexpr double kHeld = 1e-7;
+    const auto add = [&](Parameter parameter, double value, double sigma) {
+      information(parameter, parameter) += 1 / (sigma * sigma);
+      gradient[parameter] -= value / (sigma * sigma);
+    };
+    const DepthCorrection& c = result_.correction;
+    const bool periodic = c.periodic_period_m > 0;
+    add(kOffset, c.offset_m, stage.free_bias ? settings_.offset_prior_m : kHeld);
+    add(kScale, c.scale - 1, stage.free_bias ? settings_.scale_prior : kHeld);
+    add(kSine, c.periodic_sin_m, settings_.periodic_prior_m);
+    add(kCosine, c.periodic_cos_m, settings_.periodic_prior_m);
+    add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0, settings_.period_prior_m);
+    add(kContourShift, result_.contour_shift_px, settings_.contour_shift_prior_px);
+    // A faint hold keeps the solution finite in directions that nothing pins.
     information.diagonal().head<6>().array() += 1e-9 * information.diagonal().head<6>().maxCoeff();
+  }
+
+  ParameterMatrix with_priors(const NormalEquations& all, const Stage& stage,
+                              ParameterVector& gradient) const {
+    ParameterMatrix information = all.information().selfadjointView<Eigen::Lower>();
+    gradient = all.gradient();
+    add_priors(stage, information, gradient);
     return information;
   }
 
-  void step(const Stage& stage) {
+  void choose_period(const Stage& stage) {
+    const Sums sums = collect(stage, true);
+    weighed(sums, true);
+    ParameterMatrix information = contour_part(sums).information();
+    ParameterVector gradient = contour_part(sums).gradient();
+    add_priors(stage, information, gradient);
+    if (const auto term = find_period(sums.samples, range_weight(sums), information, gradient)) {
+      result_.correction.periodic_period_m = period_start_m_ = term->period_m;
+      result_.correction.periodic_sin_m = term->sin_m;
+      result_.correction.periodic_cos_m = term->cos_m;
+    }
+  }
+
+  void step(const Stage& stage, int iteration) {
     const Sums sums = collect(stage);
     const NormalEquations all = weighed(sums, stage.range_kernel_m == 0);
     if (all.count() < 50) return;
     ParameterVector gradient;
-    const ParameterMatrix information = with_priors(all, stage.free_bias, gradient);
-    const ParameterVector delta = information.ldlt().solve(gradient);
+    const ParameterMatrix information = with_priors(all, stage, gradient);
+    // Image edges and pixels change sides between steps; halved steps settle that jitter.
+    const double pace = iteration < kFullSteps ? 1.0 : 0.5;
+    const ParameterVector delta = pace * information.ldlt().solve(gradient);
     result_.T_base_sensor = perturbed(result_.T_base_sensor, delta.head<6>());
-    result_.correction.offset_m += delta[kOffset];
-    result_.correction.scale += delta[kScale];
-    small_step_ = delta.dot(information * delta) < settings_.convergence_sigmas * settings_.convergence_sigmas;
+    DepthCorrection& c = result_.correction;
+    c.offset_m += delta[kOffset];
+    c.scale += delta[kScale];
+    if (c.periodic_period_m > 0) {
+      c.periodic_sin_m += delta[kSine];
+      c.periodic_cos_m += delta[kCosine];
+      c.periodic_period_m = std::max(0.2, c.periodic_period_m + delta[kPeriod]);
+    }
+    result_.contour_shift_px += delta[kContourShift];
+    result_.last_step_sigmas = std::sqrt(delta.dot(information * delta));
+    small_step_ = result_.last_step_sigmas < settings_.convergence_sigmas;
   }
 
   void finish(const Stage& stage) {
     Sums sums = collect(stage);
     const NormalEquations all = weighed(sums, true);
     ParameterVector gradient;
-    const ParameterMatrix information = with_priors(all, true, gradient);
+    const ParameterMatrix information = with_priors(all, stage, gradient);
     result_.covariance = pose_covariance(information, all);
     result_.residual_rms_m = sums.range.rms_residual();
     const Matrix6d pose_information = information.topLeftCorner<6, 6>();
@@ -158,6 +219,7 @@ class Refiner {
   const RefineSettings& settings_;
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
+  double period_start_m_ = 0;
   bool small_step_ = false;
 };
 

@@ -12,11 +12,14 @@
 namespace calibrd {
 
 struct RefineSettings {
-  double offset_prior_m = 0.02;  ///< standard deviation of the range offset before anything was seen
-  double scale_prior = 0.005;    ///< and of the range scale
+  double offset_prior_m = 0.02;     ///< standard deviation of the range offset before anything was seen
+  double scale_prior = 0.005;       ///< and of the range scale
+  double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
+  double period_prior_m = 0.08;     ///< and of its period about the best candidate
+  double contour_shift_prior_px = 0.3;
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
-  double convergence_sigmas = 0.1;
+  double convergence_sigmas = 0.15;
   std::function<bool(double)> keep_going;  ///< called with the progress 0..1; false ends the refinement early
 };
 
@@ -24,20 +27,21 @@ struct RefineSettings {
 struct Refinement {
   Pose T_base_sensor = Pose::Identity();
   DepthCorrection correction;
+  double contour_shift_px = 0;             ///< image edges lie this far outside the predicted contours
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  bool converged = false;
-  double residual_rms_m = 0;      ///< of the range residuals that agree
-  double sigma_factor = 1;        ///< noise found over noise expected
-  double range_correlation = 1;   ///< times that range errors are less independent than their number says
+  double last_step_sigmas = 0;             ///< length of the last step against the uncertainty of the result
+  double residual_rms_m = 0;               ///< of the range residuals that agree
+  double sigma_factor = 1;                 ///< noise found over noise expected
+  double range_correlation = 1;  ///< times that range errors are less independent than their number says
   double contour_correlation = 1;
   double weakest_eigenvalue = 0;  ///< smallest eigenvalue of the pose information (m⁻², rotation at 1 m)
   RangeTally range;
   ContourTally contour;
 };
 
-/// Gauss-Newton on range (point-to-plane on projective pairs) and, where views carry images, contour residuals of
-/// all views jointly; range offset and scale are estimated beside the pose. Kernels shrink from centimetres to the
-/// noise that is found. Start within about 2 cm and 1° (see coarse_align).
+/// Gauss-Newton on range (point-to-plane on projective pairs) and, where views carry images, contour
+/// residuals of all views jointly; range offset and scale are estimated beside the pose. Kernels shrink from
+/// centimetres to the noise that is found. Start within about 2 cm and 1° (see coarse_align).
 Refinement refine(std::span<RegistrationView> views, const CameraModel& camera, const Pose& start,
                   const RefineSettings& settings);
 

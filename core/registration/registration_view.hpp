@@ -11,18 +11,19 @@
 
 namespace calibrd {
 
-/// A view made ready for registration: the robot stands at its joints, the depth is in metres, and pixels that mix
-/// two surfaces (depth edges) are gone.
+/// A view made ready for registration: the robot stands at its joints, the depth is in metres, and pixels
+/// that mix two surfaces (depth edges) are gone.
 struct RegistrationView {
   VirtualCell cell;
   std::vector<float> depth_m;  ///< measured, row-major; 0 = nothing usable
   std::vector<float> image;    ///< smoothed grey values, row-major; empty when there is none
-  double image_noise = 0;      ///< standard deviation of `image`'s horizontal differences without edges, grey values
+  double image_noise =
+      0;  ///< standard deviation of `image`'s horizontal differences without edges, grey values
 };
 
 struct PrepareSettings {
-  /// A pixel is mixed when a direct neighbour lies further away in depth than this share of its depth. A smooth
-  /// surface at 80° incidence steps 2 % per pixel on a Kinect v2.
+  /// A pixel is mixed when a direct neighbour lies further away in depth than this share of its depth. A
+  /// smooth surface at 80° incidence steps 2 % per pixel on a Kinect v2.
   double mixed_step = 0.025;
   bool use_images = true;
 };

@@ -12,14 +12,17 @@ namespace calibrd {
 /// Monotonic: the clock every frame and joint state of the live cell is stamped with.
 using Clock = std::chrono::steady_clock;
 
-/// Depth along the optical axis in whole units of `scale_m`; 0 = no measurement. Row-major, width*height values.
+/// Depth along the optical axis in whole units of `scale_m`; 0 = no measurement. Row-major, width*height
+/// values.
 struct DepthImage {
   int width = 0;
   int height = 0;
   double scale_m = 0.001;
   std::vector<std::uint16_t> raw;
 
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
   double depth_m(int x, int y) const { return raw[index(x, y)] * scale_m; }
 };
 

@@ -11,8 +11,8 @@
 
 namespace calibrd {
 
-/// The surfaces of a robot's links as Embree scenes in their link frames: built once, shared by every virtual cell
-/// of that robot. Immutable after construction.
+/// The surfaces of a robot's links as Embree scenes in their link frames: built once, shared by every virtual
+/// cell of that robot. Immutable after construction.
 class LinkScenes {
  public:
   explicit LinkScenes(const RobotModel& robot);

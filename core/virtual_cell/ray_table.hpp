@@ -28,7 +28,8 @@ class RayTable {
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   const Packet& packet(int column, int row) const {
-    return packets_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
+    return packets_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                    static_cast<std::size_t>(column)];
   }
 
  private:

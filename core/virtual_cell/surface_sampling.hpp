@@ -18,8 +18,9 @@ struct SurfaceSample {
   int link = -1;
 };
 
-/// `count` points spread uniformly by area over all link surfaces, robot at `positions` (the paper's section IV.B:
-/// uniform sampling of the CAD data). The same seed gives the same points. Empty for a robot without surfaces.
+/// `count` points spread uniformly by area over all link surfaces, robot at `positions` (the paper's section
+/// IV.B: uniform sampling of the CAD data). The same seed gives the same points. Empty for a robot without
+/// surfaces.
 std::vector<SurfaceSample> sample_surface(const RobotModel& robot, std::span<const double> positions,
                                           std::size_t count, std::uint64_t seed);
 

@@ -18,11 +18,13 @@ namespace {
 using Box2 = Eigen::AlignedBox2f;
 constexpr float kNear_m = 0.01F;
 
-/// Where the directions (x, y, 1) to a link can lie; an infinite box when part of it is beside or behind the sensor.
+/// Where the directions (x, y, 1) to a link can lie; an infinite box when part of it is beside or behind the
+/// sensor.
 Box2 directions_to(const Eigen::AlignedBox3f& bounds, const Eigen::Isometry3f& T_sensor_link) {
   Box2 directions;
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f p = T_sensor_link * bounds.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner));
+    const Eigen::Vector3f p =
+        T_sensor_link * bounds.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner));
     if (p.z() < kNear_m) {
       constexpr float kAll = std::numeric_limits<float>::max();
       return {Eigen::Vector2f(-kAll, -kAll), Eigen::Vector2f(kAll, kAll)};
@@ -57,7 +59,8 @@ RTCRayHit8 make_rays(const RayTable::Packet& packet, const Eigen::Matrix3f& R_ba
 }  // namespace
 
 struct VirtualCell::Impl {
-  Impl(const RobotModel& model, std::shared_ptr<const LinkScenes> shared) : robot(&model), links(std::move(shared)) {
+  Impl(const RobotModel& model, std::shared_ptr<const LinkScenes> shared)
+      : robot(&model), links(std::move(shared)) {
     scene = rtcNewScene(links->device());
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     for (const LinkScenes::Surface& surface : links->surfaces()) {
@@ -88,7 +91,8 @@ struct VirtualCell::Impl {
 
 void VirtualCell::Impl::trace(const RayTable::Packet& packet, int column, int row,
                               const Eigen::Isometry3f& T_base_sensor,
-                              const std::vector<Eigen::Matrix3f>& R_sensor_link, VirtualMeasurement& out) const {
+                              const std::vector<Eigen::Matrix3f>& R_sensor_link,
+                              VirtualMeasurement& out) const {
   alignas(32) static constexpr int kAllValid[RayTable::kPacketSize] = {-1, -1, -1, -1, -1, -1, -1, -1};
   alignas(32) RTCRayHit8 hits = make_rays(packet, T_base_sensor.linear(), T_base_sensor.translation());
   embree::intersect8(kAllValid, scene, hits);
@@ -97,7 +101,8 @@ void VirtualCell::Impl::trace(const RayTable::Packet& packet, int column, int ro
     const int u = column * RayTable::kPacketWidth + k % RayTable::kPacketWidth;
     const int v = row * RayTable::kPacketHeight + k / RayTable::kPacketWidth;
     if (instance == RTC_INVALID_GEOMETRY_ID || u >= out.width || v >= out.height) continue;
-    const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(out.width) + static_cast<std::size_t>(u);
+    const std::size_t pixel =
+        static_cast<std::size_t>(v) * static_cast<std::size_t>(out.width) + static_cast<std::size_t>(u);
     const Eigen::Vector3f in_link(hits.hit.Ng_x[k], hits.hit.Ng_y[k], hits.hit.Ng_z[k]);
     const Eigen::Vector3f normal = (R_sensor_link[instance] * in_link).normalized();
     const Eigen::Vector3f direction(packet.x[k], packet.y[k], 1.0F);
@@ -111,7 +116,8 @@ VirtualCell::VirtualCell(const RobotModel& robot)
     : impl_(std::make_unique<Impl>(robot, std::make_shared<LinkScenes>(robot))) {
   set_joints(std::vector<double>(robot.position_count(), 0.0));
 }
-VirtualCell::VirtualCell(const VirtualCell& other) : impl_(std::make_unique<Impl>(*other.impl_->robot, other.impl_->links)) {
+VirtualCell::VirtualCell(const VirtualCell& other)
+    : impl_(std::make_unique<Impl>(*other.impl_->robot, other.impl_->links)) {
   place(other.impl_->T_base_link);
 }
 VirtualCell::~VirtualCell() = default;
@@ -133,7 +139,7 @@ void VirtualCell::place(std::vector<Pose> T_base_link) {
   rtcCommitScene(impl_->scene);
 }
 
-float VirtualCell::depth_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const {
+SurfaceHit VirtualCell::hit_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const {
   const Eigen::Vector3f origin = T_base_sensor.translation().cast<float>();
   const Eigen::Vector3f direction = (T_base_sensor.linear() * direction_sensor).cast<float>();
   RTCRayHit hit{};
@@ -149,12 +155,19 @@ float VirtualCell::depth_along(const Eigen::Vector3d& direction_sensor, const Po
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embree::intersect1(impl_->scene, hit);
-  return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? 0.0F : hit.ray.tfar;
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const auto link = static_cast<std::size_t>(impl_->links->surfaces()[hit.hit.instID[0]].link);
+  const Eigen::Matrix3d R_sensor_link =
+      T_base_sensor.linear().transpose() * impl_->T_base_link[link].linear();
+  const Eigen::Vector3f in_link(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z);
+  const Eigen::Vector3f normal = (R_sensor_link.cast<float>() * in_link).normalized();
+  return {hit.ray.tfar, normal.dot(direction_sensor.cast<float>()) > 0 ? Eigen::Vector3f(-normal) : normal};
 }
 
 const std::vector<Pose>& VirtualCell::link_poses() const { return impl_->T_base_link; }
 
-void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& out) const {
+void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,
+                          VirtualMeasurement& out) const {
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   out.width = camera.width;
   out.height = camera.height;
@@ -166,7 +179,8 @@ void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor, 
   std::vector<Eigen::Matrix3f> R_sensor_link;
   std::vector<Box2> reach;
   for (const LinkScenes::Surface& surface : impl_->links->surfaces()) {
-    const Pose T_sensor_link = T_base_sensor.inverse() * impl_->T_base_link[static_cast<std::size_t>(surface.link)];
+    const Pose T_sensor_link =
+        T_base_sensor.inverse() * impl_->T_base_link[static_cast<std::size_t>(surface.link)];
     R_sensor_link.push_back(T_sensor_link.linear().cast<float>());
     reach.push_back(directions_to(surface.bounds, T_sensor_link.cast<float>()));
   }

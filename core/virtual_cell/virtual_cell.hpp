@@ -17,9 +17,16 @@ namespace calibrd {
 struct VirtualMeasurement {
   int width = 0;
   int height = 0;
-  std::vector<float> depth_m;           ///< along the optical axis; 0 = nothing hit
-  std::vector<Eigen::Vector3f> normal;  ///< unit, sensor frame, towards the sensor; zero where nothing was hit
-  std::vector<std::int16_t> link;       ///< index into RobotModel::links(); -1 = nothing hit
+  std::vector<float> depth_m;  ///< along the optical axis; 0 = nothing hit
+  std::vector<Eigen::Vector3f>
+      normal;                      ///< unit, sensor frame, towards the sensor; zero where nothing was hit
+  std::vector<std::int16_t> link;  ///< index into RobotModel::links(); -1 = nothing hit
+};
+
+/// What one ray meets.
+struct SurfaceHit {
+  float depth_m = 0;                                 ///< along the optical axis; 0 = nothing hit
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, sensor frame, towards the sensor
 };
 
 /// The robot placed at joint positions, measured by a virtual sensor from any pose (Embree ray casting).
@@ -37,12 +44,12 @@ class VirtualCell {
   /// Moves the robot. positions: RobotModel::position_names() order, rad or m.
   void set_joints(std::span<const double> positions);
 
-  /// Depth image, normals and link ids seen from `T_base_sensor`, lens distortion included. Reuses the buffers of
-  /// `measurement`.
+  /// Depth image, normals and link ids seen from `T_base_sensor`, lens distortion included. Reuses the
+  /// buffers of `measurement`.
   void measure(const CameraModel& camera, const Pose& T_base_sensor, VirtualMeasurement& measurement) const;
 
-  /// Depth (m) of the robot along one direction (sensor frame, z = 1) seen from `T_base_sensor`; 0 = nothing hit.
-  float depth_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
+  /// What one direction (sensor frame, z = 1) meets, seen from `T_base_sensor`.
+  SurfaceHit hit_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
 
   /// T_base_link of every link of the robot at the current joints.
   const std::vector<Pose>& link_poses() const;

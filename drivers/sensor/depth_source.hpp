@@ -13,10 +13,12 @@ namespace calibrd {
 struct SensorHealth {
   enum class State { starting, streaming, lost };
   State state = State::starting;
-  std::string reason;              ///< why it is not streaming, and what to do; empty while it is
-  std::uint64_t frames = 0;        ///< delivered since start
-  std::uint64_t frames_lost = 0;   ///< gaps in the device's sequence, and frames the reader was too slow for
-  std::uint64_t restarts = 0;      ///< of the child process
+  std::string reason;             ///< why it is not streaming, and what to do; empty while it is
+  std::uint64_t frames = 0;       ///< delivered since start
+  std::uint64_t frames_lost = 0;  ///< gaps in the device's sequence, and frames the reader was too slow for
+  std::uint64_t restarts = 0;     ///< of the child process
+  std::string device;             ///< vendor, name and URI of what is open; empty while nothing is
+  std::string notice;             ///< what is not as configured although it streams; empty: nothing
 };
 
 /// A stream of depth frames. next() has one reader; health() may be called from any thread.

@@ -24,8 +24,8 @@ struct Input {
 /// Reads it or ends the program with status 2 and a message.
 Input load(const std::filesystem::path& capture_dir, const Paths& models);
 
-/// A pose off by exactly that much: turned about the point 1.3 m ahead of the sensor about a random axis, shifted in
-/// a random direction.
+/// A pose off by exactly that much: turned about the point 1.3 m ahead of the sensor about a random axis,
+/// shifted in a random direction.
 Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random);
 
 double median(std::vector<double> values);
@@ -38,7 +38,7 @@ struct FineOptions {
   std::uint64_t seed = 1;
   int runs = 1;
   bool depth_only = false;
-  bool vary = false;   ///< another random guess for every run
+  bool vary = false;  ///< another random guess for every run
 };
 int run_fine(const FineOptions& options);
 

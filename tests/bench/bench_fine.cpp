@@ -15,14 +15,18 @@ const char* name_of(Verdict verdict) {
 }
 
 void print_run(const CalibrationResult& result, const Pose& reference) {
-  const Vector6d error = result.T_base_sensor ? difference(reference, *result.T_base_sensor) : Vector6d::Constant(NAN);
+  const Vector6d error =
+      result.T_base_sensor ? difference(reference, *result.T_base_sensor) : Vector6d::Constant(NAN);
   const double nees = error.dot(result.covariance.ldlt().solve(error));
-  std::printf("{\"verdict\": \"%s\", \"error_mm\": %.4f, \"error_mrad\": %.4f, \"sigma_mm\": %.4f, \"sigma_mrad\": %.4f, "
-              "\"nees\": %.2f, \"coverage\": %.3f, \"rms_mm\": %.3f, \"offset_mm\": %.2f, \"scale\": %.5f, \"ms\": %.1f",
-              name_of(result.verdict), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
-              1e3 * result.sigma_position_m, 1e3 * result.sigma_rotation_rad, nees, result.coverage,
-              1e3 * result.residual_rms_m, 1e3 * result.depth_correction.offset_m, result.depth_correction.scale,
-              result.time_total_ms);
+  std::printf(
+      "{\"verdict\": \"%s\", \"error_mm\": %.4f, \"error_mrad\": %.4f, \"sigma_mm\": %.4f, \"sigma_mrad\": "
+      "%.4f, "
+      "\"nees\": %.2f, \"coverage\": %.3f, \"rms_mm\": %.3f, \"offset_mm\": %.2f, \"scale\": %.5f, \"ms\": "
+      "%.1f",
+      name_of(result.verdict), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
+      1e3 * result.sigma_position_m, 1e3 * result.sigma_rotation_rad, nees, result.coverage,
+      1e3 * result.residual_rms_m, 1e3 * result.depth_correction.offset_m, result.depth_correction.scale,
+      result.time_total_ms);
   std::printf(", \"reasons\": [");
   for (std::size_t i = 0; i < result.reasons.size(); ++i)
     std::printf("%s\"%s\"", i > 0 ? ", " : "", result.reasons[i].code.c_str());
@@ -51,7 +55,8 @@ int run_fine(const FineOptions& options) {
     reference = *pose;
   }
   if (!reference) {
-    std::fprintf(stderr, "calibrd-bench: %s holds no truth.json; name a pose to start around with --around\n", options.capture_dir.c_str());
+    std::fprintf(stderr, "calibrd-bench: %s holds no truth.json; name a pose to start around with --around\n",
+                 options.capture_dir.c_str());
     return 2;
   }
   std::mt19937_64 random(options.seed);
@@ -59,7 +64,8 @@ int run_fine(const FineOptions& options) {
   std::vector<double> milliseconds;
   const auto guess = [&] {
     const double size = options.vary ? share(random) : 1.0;
-    return off_by(*reference, size * options.offset_mm * 1e-3, size * options.offset_deg * std::numbers::pi / 180, random);
+    return off_by(*reference, size * options.offset_mm * 1e-3,
+                  size * options.offset_deg * std::numbers::pi / 180, random);
   };
   CalibrationSettings settings;
   settings.depth_only = options.depth_only;
@@ -72,8 +78,9 @@ int run_fine(const FineOptions& options) {
     if (options.vary || run == 0) print_run(result, *reference);
     if (result.T_base_sensor) error = difference(*reference, *result.T_base_sensor);
   }
-  std::printf("{\"median_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, \"views\": %zu}\n", median(milliseconds),
-              1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(), input.views.size());
+  std::printf("{\"median_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, \"views\": %zu}\n",
+              median(milliseconds), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
+              input.views.size());
   return 0;
 }
 

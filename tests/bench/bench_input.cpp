@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <algorithm>
 
 #include "bench.hpp"
 #include "core/calibration/model_views.hpp"
@@ -40,7 +40,8 @@ Input load(const std::filesystem::path& capture_dir, const Paths& models) {
 
 Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random) {
   const Eigen::Vector3d ahead(0, 0, 1.3);
-  return turned_about(T_base_sensor, ahead, angle_rad * random_direction(random), offset_m * random_direction(random));
+  return turned_about(T_base_sensor, ahead, angle_rad * random_direction(random),
+                      offset_m * random_direction(random));
 }
 
 double median(std::vector<double> values) {

@@ -37,16 +37,18 @@ int run_render(const RenderOptions& options) {
   std::vector<double> joints(robot->position_count()), milliseconds;
   std::size_t fewest_pixels = SIZE_MAX;
   for (int run = -5; run < options.runs; ++run) {  // the first ones warm up
-    for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = 0.3 * std::sin(0.1 * run + static_cast<double>(j));
+    for (std::size_t j = 0; j < joints.size(); ++j)
+      joints[j] = 0.3 * std::sin(0.1 * run + static_cast<double>(j));
     const auto begin = std::chrono::steady_clock::now();
     cell.set_joints(joints);
     cell.measure(kinect2, T_base_sensor, image);
     const auto end = std::chrono::steady_clock::now();
-    fewest_pixels = std::min(fewest_pixels, static_cast<std::size_t>(std::ranges::count_if(image.link, [](auto link) { return link >= 0; })));
+    fewest_pixels = std::min(fewest_pixels, static_cast<std::size_t>(std::ranges::count_if(
+                                                image.link, [](auto link) { return link >= 0; })));
     if (run >= 0) milliseconds.push_back(std::chrono::duration<double, std::milli>(end - begin).count());
   }
-  std::printf("{\"median_ms\": %.3f, \"width\": %d, \"height\": %d, \"fewest_robot_pixels\": %zu}\n", median(milliseconds),
-              image.width, image.height, fewest_pixels);
+  std::printf("{\"median_ms\": %.3f, \"width\": %d, \"height\": %d, \"fewest_robot_pixels\": %zu}\n",
+              median(milliseconds), image.width, image.height, fewest_pixels);
   return 0;
 }
 

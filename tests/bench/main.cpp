@@ -10,7 +10,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
 
   FineOptions fine;
-  CLI::App* fine_command = app.add_subcommand("fine", "calibrate a recording from a guess that is off by a known amount");
+  CLI::App* fine_command =
+      app.add_subcommand("fine", "calibrate a recording from a guess that is off by a known amount");
   fine_command->add_option("CAPTURE_DIR", fine.capture_dir)->required();
   fine_command->add_option("--models", fine.models, "folders to look robot models up in");
   fine_command->add_option("--around", fine.around, "pose file to start around (default: truth.json)");

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/json/calibration_result_json.hpp"
+
+#include <array>
+#include <boost/json/parse.hpp>
+#include <utility>
+
+#include "api/json/calibration_result_object.hpp"
+#include "api/json/json_text.hpp"
+#include "api/json/pose_json.hpp"
+#include "api/json/strict_object.hpp"
+#include "api/pose/pose_numbers.hpp"
+#include "api/problem/api_error.hpp"
+
+namespace calibrd::api {
+namespace {
+
+namespace json = boost::json;
+
+constexpr std::array kVerdicts{std::pair{Verdict::accepted, "accepted"},
+                               std::pair{Verdict::uncertain, "uncertain"},
+                               std::pair{Verdict::rejected, "rejected"}};
+
+json::array covariance_json(const Matrix6d& covariance) {
+  json::array rows;
+  for (int r = 0; r < 6; ++r) {
+    json::array row;
+    for (int c = 0; c < 6; ++c) row.emplace_back(covariance(r, c));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+json::object depth_correction_json(const DepthCorrection& correction) {
+  return {{"scale", correction.scale},
+          {"offset_m", correction.offset_m},
+          {"periodic_sin_m", correction.periodic_sin_m},
+          {"periodic_period_m", correction.periodic_period_m},
+          {"periodic_cos_m", correction.periodic_cos_m}};
+}
+
+json::array reasons_json(const std::vector<Reason>& reasons) {
+  json::array all;
+  for (const auto& reason : reasons) all.push_back({{"code", reason.code}, {"text", reason.text}});
+  return all;
+}
+
+DepthCorrection depth_correction_of(const json::object& object) {
+  DepthCorrection correction;
+  correction.scale = number_or(object, "scale", 1);
+  correction.offset_m = number_or(object, "offset_m", 0);
+  correction.periodic_sin_m = number_or(object, "periodic_sin_m", 0);
+  correction.periodic_period_m = number_or(object, "periodic_period_m", 0);
+  correction.periodic_cos_m = number_or(object, "periodic_cos_m", 0);
+  return correction;
+}
+
+Result<CalibrationResult> read_pose_part(const json::object& object, CalibrationResult result) {
+  if (const auto* matrix = object.if_contains("T_base_sensor")) {
+    const auto numbers = flat_numbers(*matrix);
+    if (!numbers) return fail(ApiError::bad_value, "T_base_sensor");
+    auto pose = pose_of_numbers(*numbers);
+    if (!pose) return fail(ApiError::bad_value, "T_base_sensor: " + pose.error().message());
+    result.T_base_sensor = *pose;
+  }
+  const auto* covariance = object.if_contains("covariance");
+  const auto numbers = covariance ? flat_numbers(*covariance) : std::nullopt;
+  if (!numbers || numbers->size() != 36) return fail(ApiError::bad_value, "covariance");
+  for (int i = 0; i < 36; ++i) result.covariance(i / 6, i % 6) = (*numbers)[static_cast<std::size_t>(i)];
+  return result;
+}
+
+void read_reasons(const json::object& object, CalibrationResult& result) {
+  const auto* reasons = object.if_contains("reasons");
+  if (!reasons || !reasons->is_array()) return;
+  for (const auto& reason : reasons->get_array())
+    if (const auto* entry = reason.if_object())
+      result.reasons.push_back({text_or(*entry, "code", ""), text_or(*entry, "text", "")});
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+  for (const auto& [value, name] : kVerdicts)
+    if (value == verdict) return name;
+  return "rejected";
+}
+
+const char* name_of(Method method) { return method == Method::full ? "full" : "paper"; }
+
+json::object calibration_result_object(const CalibrationResult& result) {
+  json::object object{{"verdict", name_of(result.verdict)}};
+  if (result.T_base_sensor && result.verdict != Verdict::rejected)
+    object["T_base_sensor"] = matrix_json(*result.T_base_sensor);
+  object["covariance"] = covariance_json(result.covariance);
+  object["sigma_position_m"] = result.sigma_position_m;
+  object["sigma_rotation_rad"] = result.sigma_rotation_rad;
+  object["depth_correction"] = depth_correction_json(result.depth_correction);
+  object["residual_rms_m"] = result.residual_rms_m;
+  object["coverage"] = result.coverage;
+  object["views"] = result.views;
+  object["used_guess"] = result.used_guess;
+  object["reasons"] = reasons_json(result.reasons);
+  object["time_ms"] = json::object{{"total", result.time_total_ms}};
+  return object;
+}
+
+std::string calibration_result_json(const CalibrationResult& result, std::optional<double> load_ms) {
+  auto object = calibration_result_object(result);
+  if (load_ms) object["time_ms"].as_object()["load"] = *load_ms;
+  return json_text(object);
+}
+
+Result<CalibrationResult> parse_calibration_result(const std::string& text) {
+  boost::system::error_code failure;
+  const auto parsed = json::parse(text, failure);
+  const auto* object = failure ? nullptr : parsed.if_object();
+  if (!object) return fail(ApiError::bad_json, "stored calibration result");
+  CalibrationResult result;
+  const auto verdict = text_or(*object, "verdict", "");
+  for (const auto& [value, name] : kVerdicts)
+    if (verdict == name) result.verdict = value;
+  result.sigma_position_m = number_or(*object, "sigma_position_m", 0);
+  result.sigma_rotation_rad = number_or(*object, "sigma_rotation_rad", 0);
+  if (const auto* correction = object->if_contains("depth_correction"); correction && correction->is_object())
+    result.depth_correction = depth_correction_of(correction->get_object());
+  result.residual_rms_m = number_or(*object, "residual_rms_m", 0);
+  result.coverage = number_or(*object, "coverage", 0);
+  result.views = static_cast<int>(number_or(*object, "views", 0));
+  if (const auto* used = object->if_contains("used_guess"))
+    result.used_guess = used->is_bool() && used->get_bool();
+  if (const auto* times = object->if_contains("time_ms"); times && times->is_object())
+    result.time_total_ms = number_or(times->get_object(), "total", 0);
+  read_reasons(*object, result);
+  return read_pose_part(*object, std::move(result));
+}
+
+}  // namespace calibrd::api

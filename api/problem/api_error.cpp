@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/problem/api_error.hpp"
+
+#include <array>
+#include <string>
+
+namespace calibrd::api {
+namespace {
+
+struct Row {
+  ApiError error;
+  ProblemEntry entry;
+};
+
+// clang-format off
+constexpr std::array kTable{
+    Row{ApiError::bad_request, {400, "bad_request", "The request is not valid HTTP.", "Send an HTTP/1.1 request."}},
+    Row{ApiError::no_such_route, {404, "not_found", "There is nothing at this path.", "Check the path against docs/api.md."}},
+    Row{ApiError::method_not_allowed, {405, "method_not_allowed", "This path does not take this method.", "Use one of the methods in the Allow header."}},
+    Row{ApiError::no_such_sensor, {404, "no_such_sensor", "No sensor has this id.", "Use an id of GET /api/v1/sensors."}},
+    Row{ApiError::no_such_calibration, {404, "no_such_calibration", "No calibration has this id.", "Use an id of GET /api/v1/sensors/{id}/calibrations."}},
+    Row{ApiError::bad_query, {400, "bad_query", "A query parameter cannot be used.", "Correct the parameter that is named."}},
+    Row{ApiError::unknown_format, {400, "unknown_format", "No such pose format.", "Use one of the formats that are named."}},
+    Row{ApiError::wrong_content_type, {415, "wrong_content_type", "The body must be JSON.", "Send the header Content-Type: application/json."}},
+    Row{ApiError::bad_json, {400, "bad_json", "The body is not valid JSON.", "Correct the body at the place that is named."}},
+    Row{ApiError::unknown_key, {400, "unknown_key", "The body holds a key that does not exist.", "Correct the key or remove it."}},
+    Row{ApiError::bad_value, {400, "bad_value", "A value in the body cannot be used.", "Correct the value that is named."}},
+    Row{ApiError::bad_idempotency_key, {400, "bad_idempotency_key", "The Idempotency-Key cannot be used.", "Send 1 to 128 printable ASCII characters."}},
+    Row{ApiError::idempotency_conflict, {422, "idempotency_conflict", "This Idempotency-Key was used with another request.", "Use a new key for a new request."}},
+    Row{ApiError::pose_not_valid, {409, "pose_not_valid", "There is no pose that may be used now.", "Look at state and last_known of the pose without ?format=; calibrate when it is uncalibrated or drifted."}},
+    Row{ApiError::no_pose, {409, "no_pose", "The pose of this sensor is not known at all.", "Calibrate the sensor, or configure a guess for it."}},
+    Row{ApiError::no_frame, {503, "no_frame", "The sensor has no current frame.", "Look at health of the sensor; its reason says what to do."}},
+    Row{ApiError::no_joints, {503, "no_joints", "The robot controller has sent no joint positions.", "Look at link of GET /api/v1/robot; its reason says what to do."}},
+    Row{ApiError::joints_stale, {503, "joints_stale", "The joint positions are stale.", "Look at link of GET /api/v1/robot; its reason says what to do."}},
+    Row{ApiError::calibration_in_progress, {409, "calibration_in_progress", "A calibration of this sensor is under way.", "Wait for it, or cancel it with DELETE."}},
+    Row{ApiError::calibration_not_running, {409, "calibration_not_running", "This calibration has ended; it cannot be cancelled.", "Read its result with GET."}},
+    Row{ApiError::calibration_not_finished, {409, "calibration_not_finished", "This calibration has not ended yet.", "Wait until its status is succeeded."}},
+    Row{ApiError::not_activatable, {409, "not_activatable", "Only an accepted calibration can become the current pose.", "Choose one with verdict accepted."}},
+    Row{ApiError::capture_in_progress, {409, "capture_in_progress", "A capture of this sensor is under way.", "Wait for it to end."}},
+    Row{ApiError::postures_not_seen, {409, "postures_not_seen", "The robot did not hold still in enough different postures.", "Move the robot, ask for fewer postures or a longer timeout_s; views of the sensor says why frames are not used."}},
+    Row{ApiError::storage_failed, {500, "storage_failed", "The calibration store failed.", "Check disk space and permissions of storage.path; the log names the fault."}},
+    Row{ApiError::capture_failed, {500, "capture_failed", "The capture could not be written.", "Check disk space and permissions of the temporary folder (TMPDIR)."}},
+    Row{ApiError::header_too_large, {431, "header_too_large", "The request header is too large.", "Send at most 8 KiB of header."}},
+    Row{ApiError::body_too_large, {413, "body_too_large", "The request body is too large.", "Send at most 64 KiB."}},
+    Row{ApiError::too_slow, {408, "too_slow", "The request did not arrive in time.", "Send it again, faster."}},
+    Row{ApiError::too_many_connections, {503, "too_many_connections", "Too many connections are open.", "Reuse connections, or raise server.max_connections."}},
+    Row{ApiError::shutting_down, {503, "shutting_down", "The daemon is ending.", "Try again when it has been started again."}},
+    Row{ApiError::internal, {500, "internal", "Something unexpected went wrong.", "Report it with the log of the daemon around this time."}},
+};
+// clang-format on
+
+class Category final : public std::error_category {
+ public:
+  const char* name() const noexcept override { return "api"; }
+  std::string message(int code) const override {
+    const auto& entry = problem_entry(static_cast<ApiError>(code));
+    return std::string(entry.title) + " " + entry.remedy;
+  }
+};
+
+}  // namespace
+
+const ProblemEntry& problem_entry(ApiError error) {
+  for (const auto& row : kTable)
+    if (row.error == error) return row.entry;
+  return kTable.back().entry;
+}
+
+const std::error_category& api_category() {
+  static const Category category;
+  return category;
+}
+
+std::error_code make_error_code(ApiError error) { return {static_cast<int>(error), api_category()}; }
+
+}  // namespace calibrd::api

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace calibrd::api {
+
+/// An HTTP request as the routes see it: decoded, complete, without a socket.
+struct Request {
+  std::string method;  ///< "GET", "POST", …
+  std::string path;    ///< percent-decoded, without the query
+  std::map<std::string, std::string> query;
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+
+  /// The header's value, or an empty string.
+  const std::string& header(const std::string& lower_case_name) const {
+    static const std::string none;
+    const auto found = headers.find(lower_case_name);
+    return found == headers.end() ? none : found->second;
+  }
+};
+
+struct Response {
+  int status = 200;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< Content-Type included
+  std::string body;
+};
+
+/// Splits "/path?a=1&b" and decodes it; nothing when it cannot be decoded.
+std::optional<std::pair<std::string, std::map<std::string, std::string>>> parse_target(
+    std::string_view target);
+
+}  // namespace calibrd::api

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/routes/names.hpp"
+
+#include <array>
+#include <cstdio>
+#include <ctime>
+
+namespace calibrd::api {
+
+const char* name_of(PoseState state) {
+  switch (state) {
+    case PoseState::uncalibrated:
+      return "uncalibrated";
+    case PoseState::calibrated:
+      return "calibrated";
+    case PoseState::unverified:
+      return "unverified";
+    case PoseState::drifted:
+      return "drifted";
+  }
+  return "unverified";
+}
+
+const char* name_of(JobStatus status) {
+  switch (status) {
+    case JobStatus::queued:
+      return "queued";
+    case JobStatus::collecting:
+      return "collecting";
+    case JobStatus::running:
+      return "running";
+    case JobStatus::succeeded:
+      return "succeeded";
+    case JobStatus::failed:
+      return "failed";
+    case JobStatus::cancelled:
+      return "cancelled";
+  }
+  return "failed";
+}
+
+std::string rfc3339(SystemTime time) {
+  const auto ms = std::chrono::floor<std::chrono::milliseconds>(time);
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(ms);
+  const std::time_t whole = std::chrono::system_clock::to_time_t(seconds);
+  std::tm utc{};
+  gmtime_r(&whole, &utc);
+  std::array<char, 64> text{};
+  const auto length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(text.data() + length, text.size() - length, ".%03dZ",
+                static_cast<int>((ms - seconds).count()));
+  return text.data();
+}
+
+}  // namespace calibrd::api

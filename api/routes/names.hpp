@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "api/service/reports.hpp"
+
+namespace calibrd::api {
+
+/// The names the HTTP interface uses; stable.
+const char* name_of(PoseState state);
+const char* name_of(JobStatus status);
+/// "2026-01-02T03:04:05.678Z"
+std::string rfc3339(SystemTime time);
+
+}  // namespace calibrd::api

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <boost/json/object.hpp>
+#include <charconv>
+
+#include "api/json/strict_object.hpp"
+#include "api/ply/ply.hpp"
+#include "api/routes/responses.hpp"
+#include "api/routes/routes.hpp"
+
+namespace calibrd::api {
+namespace {
+
+constexpr int kMaxPostures = 50;
+constexpr double kMaxTimeout_s = 600;
+
+Result<CaptureRequest> read_capture_request(const Request& request, const std::string& sensor_id) {
+  const auto body =
+      read_body(request.body, request.header("content-type"), {"postures", "timeout_s", "note"});
+  if (!body) return body.error();
+  const auto postures = read_int(*body, "postures", 1, kMaxPostures);
+  if (!postures) return postures.error();
+  const auto timeout_s = read_number(*body, "timeout_s", 0.1, kMaxTimeout_s);
+  if (!timeout_s) return timeout_s.error();
+  const auto note = read_text(*body, "note", 4096);
+  if (!note) return note.error();
+  return CaptureRequest{sensor_id, postures->value_or(1), Seconds(timeout_s->value_or(30)),
+                        note->value_or("")};
+}
+
+Response answer_capture(const Request& request, const PathValues& values, CellService& service) {
+  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+  const auto wanted = read_capture_request(request, values[0]);
+  if (!wanted) return problem(wanted.error());
+  auto archive = service.record_capture(*wanted);
+  if (!archive) return problem(archive.error());
+  return {200,
+          {{"Content-Type", "application/x-tar"},
+           {"Content-Disposition", "attachment; filename=\"" + archive->file_name + "\""},
+           {"Cache-Control", "no-store"}},
+          std::move(archive->tar)};
+}
+
+std::string number(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string pose_numbers(const Pose& pose) {
+  std::string text;
+  for (int i = 0; i < 16; ++i) text.append(i == 0 ? "" : " ").append(number(pose.matrix()(i / 4, i % 4)));
+  return text;
+}
+
+/// What a cloud was made from, as name and value: comments of the file, and headers.
+std::vector<std::pair<std::string, std::string>> provenance(const Cloud& cloud) {
+  std::vector<std::pair<std::string, std::string>> lines{{"Frame", cloud.frame}};
+  if (cloud.joint_stamp_ns) lines.emplace_back("Joint-Stamp-Ns", std::to_string(*cloud.joint_stamp_ns));
+  if (!cloud.joint_positions_rad.empty()) {
+    std::string joints;
+    for (const double position : cloud.joint_positions_rad)
+      joints += (joints.empty() ? "" : " ") + number(position);
+    lines.emplace_back("Joint-Positions", joints);
+  }
+  if (cloud.frame_stamp_ns) lines.emplace_back("Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
+  if (cloud.T_base_sensor) {
+    lines.emplace_back("T-Base-Sensor", pose_numbers(*cloud.T_base_sensor));
+    lines.emplace_back("Pose-Valid", cloud.pose_valid ? "true" : "false");
+  }
+  return lines;
+}
+
+Response cloud_response(const Cloud& cloud) {
+  Response response{200, {{"Content-Type", "application/x-ply"}, {"Cache-Control", "no-store"}}, {}};
+  std::vector<std::string> comments;
+  for (const auto& [name, value] : provenance(cloud)) {
+    response.headers.emplace_back("Calibrd-" + name, value);
+    comments.push_back("Calibrd-" + name + " " + value);
+  }
+  response.body = write_ply(cloud.points, cloud.residual_m, comments);
+  return response;
+}
+
+Response answer_cloud(CloudKind kind, const Request& request, const PathValues& values,
+                      CellService& service) {
+  if (auto unknown = unknown_query(request, {"frame"})) return problem(*unknown);
+  const auto frame = request.query.find("frame");
+  const bool in_base = frame != request.query.end() && frame->second == "base";
+  if (frame != request.query.end() && !in_base && frame->second != "sensor")
+    return problem(ApiError::bad_query,
+                   "frame: \"" + frame->second + "\" is neither \"sensor\" nor \"base\"");
+  const auto cloud = service.cloud({values[0], kind, in_base});
+  return cloud ? cloud_response(*cloud) : problem(cloud.error());
+}
+
+}  // namespace
+
+void add_recording_routes(Router& router, CellService& service) {
+  router.add("POST", "/api/v1/sensors/{id}/captures", Cost::slow,
+             [&service](const Request& request, const PathValues& values) {
+               return answer_capture(request, values, service);
+             });
+  constexpr std::array kKinds{std::pair{"measured", CloudKind::measured},
+                              std::pair{"virtual", CloudKind::virtual_},
+                              std::pair{"residual", CloudKind::residual}};
+  for (const auto& [name, kind] : kKinds)
+    router.add("GET", std::string("/api/v1/sensors/{id}/clouds/") + name, Cost::slow,
+               [&service, kind = kind](const Request& request, const PathValues& values) {
+                 return answer_cloud(kind, request, values, service);
+               });
+}
+
+}  // namespace calibrd::api

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <boost/json/value.hpp>
+#include <initializer_list>
+#include <set>
+#include <string>
+
+#include "api/problem/api_error.hpp"
+#include "api/routes/message.hpp"
+
+namespace calibrd::api {
+
+Response json_response(int status, const boost::json::value& body);
+
+/// RFC 9457 problem+json with `code` and `remedy`. Errors that are not ApiError become status 500, code
+/// "internal", with their message as the detail.
+Response problem(const Error& error);
+Response problem(ApiError error, std::string detail = {});
+
+/// Nothing when every query parameter of the request is one of `known`, else the error naming the nearest.
+std::optional<Error> unknown_query(const Request& request, std::initializer_list<std::string> known);
+
+}  // namespace calibrd::api

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/routes/routes.hpp"
+
+namespace calibrd::api {
+
+Router make_routes(CellService& service) {
+  Router router;
+  add_health_routes(router, service);
+  add_pose_routes(router, service);
+  add_sensor_routes(router, service);
+  add_robot_routes(router, service);
+  add_calibration_routes(router, service);
+  add_recording_routes(router, service);
+  return router;
+}
+
+}  // namespace calibrd::api

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "api/routes/router.hpp"
+#include "api/service/cell_service.hpp"
+
+namespace calibrd::api {
+
+/// Every route of the HTTP interface (docs/api.md) over `service`, which must outlive the router.
+Router make_routes(CellService& service);
+
+// The parts it is made of.
+void add_pose_routes(Router& router, CellService& service);
+void add_sensor_routes(Router& router, CellService& service);
+void add_robot_routes(Router& router, CellService& service);
+void add_calibration_routes(Router& router, CellService& service);
+void add_recording_routes(Router& router, CellService& service);
+void add_health_routes(Router& router, CellService& service);
+
+}  // namespace calibrd::api

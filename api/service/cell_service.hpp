@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/service/reports.hpp"
+#include "core/base/result.hpp"
+
+namespace calibrd::api {
+
+/// What the HTTP interface asks of the cell. Safe to call from any thread. Errors are ApiError unless said
+/// otherwise.
+///
+/// Calls marked quick answer from memory and never wait for a calibration, a render, the disk or a device:
+/// the server makes them on its only network thread.
+class CellService {
+ public:
+  virtual ~CellService() = default;
+
+  virtual CellReport cell() const = 0;                                    ///< quick
+  virtual std::vector<SensorReport> sensors() const = 0;                  ///< quick
+  virtual Result<SensorReport> sensor(std::string_view id) const = 0;     ///< quick
+  virtual Result<PoseReport> pose(std::string_view sensor_id) const = 0;  ///< quick
+  virtual RobotReport robot() const = 0;                                  ///< quick
+
+  /// Starts a calibration, or finds the one an equal request with the same Idempotency-Key started.
+  virtual Result<CalibrationReport> start_calibration(const CalibrationRequest& request) = 0;
+  virtual Result<CalibrationReport> calibration(std::string_view id) const = 0;
+  virtual Result<CalibrationReport> cancel_calibration(std::string_view id) = 0;
+  virtual Result<CalibrationReport> activate_calibration(std::string_view id) = 0;
+  virtual Result<HistoryPage> history(const HistoryQuery& query) const = 0;
+
+  /// Records postures of the live cell as a capture/1 folder, in a tar archive. Waits for the robot to hold
+  /// still.
+  virtual Result<CaptureArchive> record_capture(const CaptureRequest& request) = 0;
+  virtual Result<Cloud> cloud(const CloudRequest& request) const = 0;
+};
+
+}  // namespace calibrd::api

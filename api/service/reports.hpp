@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/calibration/calibrate.hpp"
+#include "core/geometry/camera_model.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/sensing/images.hpp"
+
+namespace calibrd::api {
+
+using SystemTime = std::chrono::system_clock::time_point;
+using Seconds = std::chrono::duration<double>;
+
+enum class PoseState { uncalibrated, calibrated, unverified, drifted };
+
+/// One comparison of a frame with what the current pose predicts.
+struct CheckReport {
+  bool agrees = false;
+  double agreement = 0;          ///< share of measured robot pixels within tolerance, 0..1
+  double median_residual_m = 0;  ///< measured minus predicted depth
+  Seconds age{0};
+};
+
+/// The pose a sensor has, and whether it may be used.
+struct PoseReport {
+  struct Known {
+    std::string calibration_id;
+    SystemTime calibrated_at;
+    CalibrationResult result;  ///< accepted, with T_base_sensor
+  };
+  std::string sensor_id;
+  std::string base_frame;
+  std::string sensor_frame;
+  PoseState state = PoseState::uncalibrated;
+  bool valid = false;  ///< state is calibrated and passed_check_age is below max_unverified
+  std::string reason;  ///< why it is not valid, and what to do; empty while it is
+  std::string job;     ///< id of a calibration under way; empty: none
+  std::optional<Known> known;
+  std::optional<CheckReport> last_check;    ///< agreeing or not
+  std::optional<Seconds> passed_check_age;  ///< since the last check that agreed
+  Seconds max_unverified{0};
+};
+
+/// What happened to the frames of a sensor on their way to becoming views.
+struct ViewReport {
+  bool usable = false;  ///< the newest judged frame became a view
+  std::string code;     ///< "usable", "moving", "joints_stale", …
+  std::string reason;   ///< in words, and what to do; empty while usable
+  std::uint64_t views = 0;
+  std::vector<std::pair<std::string, std::uint64_t>> refused;  ///< code and number of frames, since start
+};
+
+struct SensorReport {
+  std::string id;
+  std::string health;  ///< "starting", "streaming", "lost"
+  std::string reason;  ///< why it is not streaming, and what to do
+  std::uint64_t frames = 0, frames_lost = 0, restarts = 0;
+  double frame_rate_hz = 0;
+  std::optional<Seconds> frame_age;
+  CameraModel camera;
+  bool has_image = false;  ///< the newest frame came with an image
+  ViewReport views;
+  PoseState pose_state = PoseState::uncalibrated;
+  bool pose_valid = false;
+  std::string job;
+};
+
+struct LinkPlacement {
+  std::string name;
+  Pose T_base_link;
+};
+
+struct ControllerReport {
+  std::optional<bool> drives_powered, e_stopped, in_error, in_motion, motion_possible;
+  std::string mode;  ///< "unknown", "manual", "automatic"
+  int error_code = 0;
+  Seconds age{0};
+};
+
+struct RobotReport {
+  std::string model;
+  std::string base_frame;
+  std::string controller_frame;
+  std::string link_state;  ///< "connecting", "streaming", "joints_stale", "silent", "faulted"
+  std::string link_reason;
+  std::uint64_t connects = 0, framing_errors = 0, rejected_values = 0;
+  std::vector<std::string> joint_names;
+  std::optional<JointState> joints;  ///< newest; nothing before the first
+  Seconds joints_age{0};
+  bool joints_stale = true;
+  bool still = false;
+  std::optional<ControllerReport> controller;  ///< nothing before its first status
+  std::vector<LinkPlacement> links;            ///< at `joints`; empty without them
+};
+
+struct CellReport {
+  std::string version;
+  Seconds uptime{0};
+  RobotReport robot;
+  std::vector<SensorReport> sensors;
+};
+
+enum class JobStatus { queued, collecting, running, succeeded, failed, cancelled };
+
+struct CalibrationRequest {
+  std::string sensor_id;
+  Method method = Method::full;
+  std::optional<Pose> guess_T_base_sensor;
+  std::optional<int> postures;  ///< nothing: as configured
+  bool activate = true;
+  std::string idempotency_key;  ///< empty: none
+  std::string fingerprint;      ///< equal for requests that ask for the same
+};
+
+/// A calibration, under way or ended. It succeeded exactly when its verdict is accepted.
+struct CalibrationReport {
+  std::string id;
+  std::string sensor_id;
+  JobStatus status = JobStatus::queued;
+  double progress = 0;  ///< 0..1
+  std::string message;  ///< what it is doing, or why it failed and what to do
+  SystemTime created;
+  std::optional<SystemTime> finished;
+  Method method = Method::full;
+  int postures_wanted = 0;
+  int postures_seen = 0;
+  bool activate = true;
+  bool current = false;                     ///< its pose is the one being served
+  std::optional<CalibrationResult> result;  ///< of every calibration that came to a verdict
+};
+
+struct HistoryQuery {
+  std::string sensor_id;
+  int limit = 20;
+  std::string before;  ///< id; empty: from the newest
+};
+
+struct HistoryPage {
+  std::vector<CalibrationReport> calibrations;  ///< newest first
+  bool more = false;
+};
+
+struct CaptureRequest {
+  std::string sensor_id;
+  int postures = 1;
+  Seconds timeout{30};
+  std::string note;
+};
+
+struct CaptureArchive {
+  std::string file_name;  ///< "kinect2-20260102T030405Z.tar"
+  std::string tar;
+};
+
+enum class CloudKind { measured, virtual_, residual };
+
+struct CloudRequest {
+  std::string sensor_id;
+  CloudKind kind = CloudKind::measured;
+  bool in_base_frame = false;
+};
+
+/// Points in `frame`, with the joints and the frame they were made from.
+struct Cloud {
+  std::string frame;
+  std::vector<Eigen::Vector3f> points;         ///< m
+  std::vector<float> residual_m;               ///< measured minus predicted depth; empty but for residual
+  std::optional<std::int64_t> joint_stamp_ns;  ///< monotonic clock of the daemon
+  std::vector<double> joint_positions_rad;
+  std::optional<std::int64_t> frame_stamp_ns;  ///< monotonic clock of the daemon
+  std::optional<Pose> T_base_sensor;           ///< the pose the points were made with
+  bool pose_valid = false;  ///< T_base_sensor is a valid pose, not a guess or a last known one
+};
+
+}  // namespace calibrd::api

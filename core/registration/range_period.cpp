@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/registration/range_period.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+namespace calibrd {
+namespace {
+
+// Modulation of 16 to 120 MHz and its harmonics wiggle with periods of this order; longer ones pass for a
+// scale.
+constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.85, 0.97, 1.10, 1.25};
+constexpr double kSignificantGain = 12;  // in units of χ²; two more parameters gain 2 by chance
+
+struct Fit {
+  double gain;  // how far the cost falls
+  ParameterVector solution;
+};
+
+Fit fit_with(std::span<const RangeSample> samples, double sample_weight,
+             const ParameterMatrix& rest_information, const ParameterVector& rest_gradient, double period_m) {
+  ParameterMatrix information = rest_information;
+  ParameterVector gradient = rest_gradient;
+  for (const RangeSample& sample : samples) {
+    const Observation& o = sample.observation;
+    const double weight = sample_weight * o.robust_weight / (o.sigma * o.sigma);
+    ParameterVector jacobian = o.jacobian;
+    const double phase = 2 * std::numbers::pi * sample.depth_m / period_m;
+    jacobian[kSine] = std::sin(phase);
+    jacobian[kCosine] = std::cos(phase);
+    information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    gradient += weight * o.residual * jacobian;
+  }
+  const ParameterMatrix full = information.selfadjointView<Eigen::Lower>();
+  const ParameterVector solution = full.ldlt().solve(gradient);
+  return {gradient.dot(solution), solution};
+}
+
+}  // namespace
+
+std::optional<PeriodicTerm> find_period(std::span<const RangeSample> samples, double sample_weight,
+                                        const ParameterMatrix& rest_information,
+                                        const ParameterVector& rest_gradient) {
+  // Without a periodic term: hold its amplitudes at 0.
+  ParameterMatrix held = rest_information;
+  held(kSine, kSine) += 1e12;
+  held(kCosine, kCosine) += 1e12;
+  const double base = fit_with(samples, sample_weight, held, rest_gradient, kCandidates_m[0]).gain;
+  std::optional<PeriodicTerm> best;
+  double best_gain = base + kSignificantGain;
+  for (const double period_m : kCandidates_m) {
+    const Fit fit = fit_with(samples, sample_weight, rest_information, rest_gradient, period_m);
+    if (fit.gain <= best_gain) continue;
+    best_gain = fit.gain;
+    best = PeriodicTerm{period_m, fit.solution[kSine], fit.solution[kCosine]};
+  }
+  return best;
+}
+
+}  // namespace calibrd

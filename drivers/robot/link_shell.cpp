@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/robot/link_shell.hpp"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+#include <utility>
+#include <variant>
+
+#include "drivers/robot/tcp_socket.hpp"
+
+namespace calibrd {
+
+namespace asio = boost::asio;
+
+LinkShell::LinkShell(const asio::any_io_executor& executor, const std::string& host, std::uint16_t port,
+                     LinkMachine machine, RobotLinkEvents events)
+    : socket_(executor),
+      timer_(executor),
+      lookup_(executor, host, port),
+      machine_(std::move(machine)),
+      events_(std::move(events)) {}
+
+void LinkShell::start() {
+  const std::lock_guard lock(mutex_);
+  obey(machine_.start(Clock::now()));
+}
+
+void LinkShell::stop() {
+  const std::lock_guard lock(mutex_);
+  obey(machine_.stop());
+  stopped_ = true;
+  timer_.cancel();
+}
+
+RobotLinkHealth LinkShell::health() const {
+  const std::lock_guard lock(health_mutex_);
+  return health_;
+}
+
+void LinkShell::obey(LinkSteps steps) {
+  {
+    const std::lock_guard lock(health_mutex_);
+    health_ = machine_.health();
+  }
+  for (LinkStep& step : steps) {
+    if (stopped_) return;
+    std::visit([this](auto& chosen) { carry_out(std::move(chosen)); }, step);
+  }
+}
+
+/// Wraps a completion handler: locks, keeps this alive, and drops completions of an earlier connection.
+template <class Handler>
+auto LinkShell::for_this_connection(Handler handler) {
+  return [self = shared_from_this(), connection = connection_,
+          handler = std::move(handler)](auto&&... results) mutable {
+    const std::lock_guard lock(self->mutex_);
+    if (!self->stopped_ && connection == self->connection_)
+      handler(std::forward<decltype(results)>(results)...);
+  };
+}
+
+void LinkShell::carry_out(link_step::Connect) {
+  ++connection_;
+  lookup_.start(
+      for_this_connection([this](const std::error_code& failed, const NameLookup::Endpoints& endpoints) {
+        if (failed) return obey(machine_.on_connect_failed(failed, Clock::now()));
+        try_endpoints(endpoints, 0);
+      }));
+}
+
+void LinkShell::try_endpoints(std::vector<Tcp::endpoint> endpoints, std::size_t index) {
+  const Tcp::endpoint endpoint = endpoints[index];
+  ErrorCode ignored;
+  socket_.close(ignored);
+  socket_.async_connect(
+      endpoint, for_this_connection([this, endpoints = std::move(endpoints), index](ErrorCode failed) {
+        if (!failed && connected_to_itself(socket_)) failed = asio::error::connection_refused;
+        if (!failed) return on_connected();
+        if (index + 1 < endpoints.size()) return try_endpoints(endpoints, index + 1);
+        obey(machine_.on_connect_failed(failed, Clock::now()));
+      }));
+}
+
+void LinkShell::on_connected() {
+  tune_state_socket(socket_);
+  wait_for_bytes();
+  obey(machine_.on_connected(Clock::now()));
+}
+
+void LinkShell::carry_out(link_step::Close) {
+  ++connection_;
+  lookup_.cancel();
+  outbox_.clear();
+  leaving_.reset();
+  ErrorCode ignored;
+  socket_.close(ignored);
+}
+
+void LinkShell::wait_for_bytes() {
+  socket_.async_wait(Tcp::socket::wait_read, for_this_connection([this](ErrorCode failed) {
+                       if (failed) return obey(machine_.on_closed(failed, Clock::now()));
+                       read_what_is_there();
+                     }));
+}
+
+void LinkShell::read_what_is_there() {
+  // A flood must not keep the executor from its other work.
+  constexpr int kReadsPerTurn = 16;
+  const std::uint64_t connection = connection_;
+  for (int i = 0; i < kReadsPerTurn; ++i) {
+    const bool more = read_once();
+    if (stopped_ || connection != connection_) return;
+    if (!more) break;
+  }
+  wait_for_bytes();
+}
+
+/// True when more bytes are waiting.
+bool LinkShell::read_once() {
+  const StampedRead read = read_stamped(socket_, inbox_);
+  const Clock::time_point now = Clock::now();
+  if (read.error == std::errc::operation_would_block) return false;
+  if (read.error || read.size == 0) {
+    obey(machine_.on_closed(read.error, now));
+    return false;
+  }
+  last_stamp_ = std::clamp(read.stamp, std::min(last_stamp_, now), now);
+  ErrorCode failed;
+  const bool more = socket_.available(failed) > 0 && !failed;
+  obey(machine_.on_received({std::span(inbox_).first(read.size), last_stamp_, more}, now));
+  return more;
+}
+
+void LinkShell::carry_out(link_step::Send send) {
+  outbox_.insert(outbox_.end(), send.bytes.begin(), send.bytes.end());
+  write_outbox();
+}
+
+void LinkShell::write_outbox() {
+  if (leaving_ || outbox_.empty()) return;
+  leaving_ = std::make_shared<std::vector<std::byte>>(std::exchange(outbox_, {}));
+  // The handler shares the bytes: they must live until the operation has ended, even when this connection is
+  // closed.
+  auto written = for_this_connection([this, bytes = leaving_](ErrorCode failed, std::size_t) {
+    leaving_.reset();
+    if (!failed) write_outbox();  // a failure shows on the reading side
+  });
+  asio::async_write(socket_, asio::buffer(*leaving_), std::move(written));
+}
+
+void LinkShell::carry_out(link_step::ArmTimer timer) {
+  timer_.expires_at(timer.at);
+  timer_.async_wait([self = shared_from_this(), round = ++timer_round_](ErrorCode) {
+    const std::lock_guard lock(self->mutex_);
+    if (self->stopped_ || round != self->timer_round_) return;
+    self->obey(self->machine_.on_tick(Clock::now()));
+  });
+}
+
+void LinkShell::carry_out(link_step::DeliverJoints delivery) {
+  if (events_.on_joints) events_.on_joints(delivery.joints);
+}
+
+void LinkShell::carry_out(link_step::DeliverStatus delivery) {
+  if (events_.on_status) events_.on_status(delivery.status);
+}
+
+void LinkShell::carry_out(link_step::ReportHealth report) {
+  if (events_.on_health) events_.on_health(report.health);
+}
+
+}  // namespace calibrd

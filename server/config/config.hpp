@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera_model.hpp"
+#include "core/geometry/pose.hpp"
+
+namespace calibrd {
+
+using Duration = std::chrono::milliseconds;
+
+struct ServerConfig {
+  std::string address = "127.0.0.1";
+  int port = 8080;
+  int max_connections = 64;
+};
+
+/// How one joint of the model follows the controller's values: model = sign * scale * value + offset +
+/// couplings.
+struct JointConfig {
+  int index = -1;  ///< place in the controller's message, from 0; -1: that of the joint in the model
+  int sign = 1;
+  double scale = 1;
+  double offset_deg = 0;
+  std::map<std::string, double> coupling;  ///< other model joint -> factor on its controller value
+};
+
+struct RobotConfig {
+  std::filesystem::path urdf;
+  std::vector<std::filesystem::path> search_paths;
+  std::string base_link;
+  std::string controller_frame;
+  std::string driver = "simple_message";
+  std::string host;
+  int port = 50241;
+  std::string byte_order = "big";
+  int group = 0;
+  Duration joints_stale_after{250};
+  Duration reconnect_after{2000};
+  std::map<std::string, JointConfig> joints;
+};
+
+struct SensorConfig {
+  std::string driver = "openni2";
+  std::string uri;
+  std::filesystem::path oni_file;
+  std::filesystem::path driver_directory;
+  std::string image = "infrared";
+  int fps = 30;
+  CameraModel camera{.width = 512, .height = 424};
+  double depth_scale = 0.001;
+  Duration latency{0};
+  std::optional<Pose> guess_T_base_sensor;
+};
+
+struct PoseConfig {
+  Duration max_unverified{60'000};
+  Duration check_period{1000};
+};
+
+struct CalibrationConfig {
+  int postures = 5;
+  double min_posture_distance_deg = 10;
+  double still_speed_deg_s = 0.1;
+  Duration settle_time{300};
+  int frames_per_posture = 5;
+  Duration collect_timeout{600'000};
+};
+
+struct StorageConfig {
+  std::filesystem::path path = "/var/lib/calibrd/calibrd.db";
+};
+
+struct LogConfig {
+  std::string level = "info";
+  std::string format = "text";
+};
+
+/// Everything that can be configured. Each key, its range and its meaning are declared in settings_table.cpp.
+struct Config {
+  ServerConfig server;
+  RobotConfig robot;
+  std::map<std::string, SensorConfig> sensors;
+  PoseConfig pose;
+  CalibrationConfig calibration;
+  StorageConfig storage;
+  LogConfig log;
+};
+
+}  // namespace calibrd

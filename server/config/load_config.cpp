@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/load_config.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/robot/nearest_name.hpp"
+#include "server/config/config_error.hpp"
+#include "server/config/setting.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr std::string_view kEnvironmentPrefix = "CALIBRD_";
+
+bool matches(const Setting& setting, const std::vector<std::string>& path) {
+  return setting.path.size() == path.size() &&
+         std::equal(path.begin(), path.end(), setting.path.begin(),
+                    [](const auto& part, const auto& wanted) { return wanted == "*" || part == wanted; });
+}
+
+Names names_in(const Setting& setting, const std::vector<std::string>& path) {
+  Names names;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    if (setting.path[i] == "*") names.push_back(path[i]);
+  return names;
+}
+
+/// Known names for the first part of the path that no setting has: what a misspelt key may have meant.
+Error unknown_key(const RawEntry& entry) {
+  std::vector<const Setting*> left;
+  for (const auto& setting : settings_table()) left.push_back(&setting);
+  for (std::size_t i = 0; i < entry.path.size(); ++i) {
+    std::vector<std::string> known;
+    std::vector<const Setting*> next;
+    for (const auto* setting : left) {
+      if (i >= setting->path.size()) continue;
+      const auto& part = setting->path[i];
+      if (part == "*" || part == entry.path[i]) next.push_back(setting);
+      if (part != "*" && std::find(known.begin(), known.end(), part) == known.end()) known.push_back(part);
+    }
+    if (next.empty()) {
+      const auto hint = known.empty() ? std::string() : " (" + name_hint(entry.path[i], known) + ")";
+      return Error{ConfigError::unknown_key, entry.origin + ": " + join_path(entry.path) + hint};
+    }
+    left = std::move(next);
+  }
+  return Error{ConfigError::unknown_key,
+               entry.origin + ": " + join_path(entry.path) + " is a section, not a key"};
+}
+
+Status apply(const RawEntry& entry, LoadedConfig& loaded) {
+  const auto& table = settings_table();
+  const auto setting =
+      std::find_if(table.begin(), table.end(), [&](const auto& s) { return matches(s, entry.path); });
+  if (setting == table.end()) return unknown_key(entry);
+  const auto path = join_path(entry.path);
+  if (auto status = setting->set(loaded.config, names_in(*setting, entry.path), entry.value); !status)
+    return Error{status.error().code, entry.origin + ": " + path + ": " + status.error().detail};
+  loaded.origins[path] = entry.origin;
+  return Done{};
+}
+
+/// Environment names have no lower case and no dash: finds the sensor or joint that was meant.
+void restore_case(std::vector<std::string>& path, const Config& config) {
+  const auto plain = [](std::string name) {
+    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+  };
+  const auto restore = [&](std::string& part, const auto& known) {
+    for (const auto& [name, unused] : known)
+      if (plain(name) == part) part = name;
+  };
+  if (path.size() > 1 && path[0] == "sensors") restore(path[1], config.sensors);
+  if (path.size() > 2 && path[0] == "robot" && path[1] == "joints") restore(path[2], config.robot.joints);
+}
+
+/// The entry of "CALIBRD_SECTION__KEY=value"; nothing for any other variable.
+std::optional<RawEntry> environment_entry(const std::string& variable, const Config& config) {
+  const auto equals = variable.find('=');
+  if (!variable.starts_with(kEnvironmentPrefix) || equals == std::string::npos) return std::nullopt;
+  std::string name = variable.substr(kEnvironmentPrefix.size(), equals - kEnvironmentPrefix.size());
+  if (name.find("__") == std::string::npos) return std::nullopt;
+  RawEntry entry{{""}, parse_text_value(variable.substr(equals + 1)), variable.substr(0, equals)};
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (name.compare(i, 2, "__") == 0) {
+      entry.path.emplace_back();
+      ++i;
+    } else {
+      entry.path.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
+    }
+  }
+  restore_case(entry.path, config);
+  return entry;
+}
+
+Result<RawEntry> override_entry(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return Error{ConfigError::bad_override, "--set " + text};
+  const auto key = text.substr(0, equals);
+  return RawEntry{split_path(key), parse_text_value(text.substr(equals + 1)), "--set " + key};
+}
+
+Status check_required(const Config& config) {
+  for (const auto& setting : settings_table()) {
+    if (!setting.required) continue;
+    for (const auto& names : instances(setting, config))
+      if (setting.toml(config, names).empty())
+        return Error{ConfigError::missing_key, join_path(path_of(setting, names))};
+  }
+  return Done{};
+}
+
+/// Sensor ids stand in URLs.
+Status check_sensor_ids(const Config& config) {
+  for (const auto& [id, unused] : config.sensors) {
+    const bool fits = !id.empty() && id.size() <= 64 &&
+                      std::all_of(id.begin(), id.end(),
+                                  [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
+    if (!fits)
+      return Error{ConfigError::bad_value,
+                   "sensors.\"" + id + "\": an id has 1 to 64 letters, digits, - and _"};
+  }
+  return Done{};
+}
+
+Status check_whole(const Config& config) {
+  if (auto status = check_required(config); !status) return status;
+  if (auto status = check_sensor_ids(config); !status) return status;
+  for (const auto& [id, sensor] : config.sensors)
+    if (!sensor.uri.empty() && !sensor.oni_file.empty())
+      return Error{ConfigError::bad_value,
+                   "sensors." + id + ": uri and oni_file exclude each other; remove one"};
+  return Done{};
+}
+
+}  // namespace
+
+Result<LoadedConfig> load_config(const ConfigSources& sources) {
+  LoadedConfig loaded;
+  if (sources.file) {
+    const auto entries = read_toml_file(*sources.file);
+    if (!entries) return entries.error();
+    for (const auto& entry : *entries)
+      if (auto status = apply(entry, loaded); !status) return status.error();
+  }
+  for (const auto& variable : sources.environment)
+    if (const auto entry = environment_entry(variable, loaded.config))
+      if (auto status = apply(*entry, loaded); !status) return status.error();
+  for (const auto& text : sources.overrides) {
+    const auto entry = override_entry(text);
+    if (!entry) return entry.error();
+    if (auto status = apply(*entry, loaded); !status) return status.error();
+  }
+  if (auto status = check_whole(loaded.config); !status) return status.error();
+  return loaded;
+}
+
+std::vector<std::string> process_environment() {
+  std::vector<std::string> all;
+  for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable)
+    all.emplace_back(*variable);
+  return all;
+}
+
+}  // namespace calibrd

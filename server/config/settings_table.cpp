@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include <functional>
+
+#include "server/config/kinds.hpp"
+#include "server/config/setting.hpp"
+
+namespace calibrd {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The part of the configuration that a path's names pick; made when it is not there yet.
+template <class Section>
+using Pick = std::function<Section&(Config&, const Names&)>;
+
+template <class Section>
+class SectionDeclarer {
+ public:
+  SectionDeclarer(std::vector<Setting>& table, std::vector<std::string> path, Pick<Section> pick)
+      : table_(table), path_(std::move(path)), pick_(std::move(pick)) {}
+
+  template <class Member, class T>
+  Setting& operator()(const char* key, Member member, Kind<T> kind, const char* unit, const char* meaning) {
+    Setting setting;
+    setting.path = path_;
+    setting.path.emplace_back(key);
+    setting.type = kind.name;
+    setting.unit = unit;
+    setting.meaning = meaning;
+    setting.set = [pick = pick_, member, read = kind.read](Config& config, const Names& names,
+                                                           const RawValue& raw) -> Status {
+      auto value = read(raw);
+      if (!value) return value.error();
+      std::invoke(member, pick(config, names)) = *std::move(value);
+      return Done{};
+    };
+    setting.toml = [pick = pick_, member, write = kind.write](const Config& config, const Names& names) {
+      Config copy = config;  // pick() may make the section
+      return write(std::invoke(member, pick(copy, names)));
+    };
+    table_.push_back(std::move(setting));
+    return table_.back();
+  }
+
+ private:
+  std::vector<Setting>& table_;
+  std::vector<std::string> path_;
+  Pick<Section> pick_;
+};
+
+void declare_server(std::vector<Setting>& table) {
+  SectionDeclarer<ServerConfig> key(table, {"server"},
+                                    [](Config& c, const Names&) -> ServerConfig& { return c.server; });
+  key("address", &ServerConfig::address, text(), "",
+      "Address the HTTP server listens on. 0.0.0.0 opens it to the network.");
+  key("port", &ServerConfig::port, integer(0, 65535), "",
+      "TCP port of the HTTP server. 0 takes any free port and logs it.");
+  key("max_connections", &ServerConfig::max_connections, integer(1, 10000), "",
+      "Connections served at a time; more are answered 503.");
+}
+
+void declare_robot(std::vector<Setting>& table) {
+  SectionDeclarer<RobotConfig> key(table, {"robot"},
+                                   [](Config& c, const Names&) -> RobotConfig& { return c.robot; });
+  key("urdf", &RobotConfig::urdf, path(), "", "Robot model.").required = true;
+  key("search_paths", &RobotConfig::search_paths, paths(), "",
+      "Folders where package://NAME/… and relative meshes are looked up, after the URDF's own folder.");
+  key("base_link", &RobotConfig::base_link, text(), "",
+      "Link whose frame is the base of every published pose. Empty: the URDF's root.");
+  key("controller_frame", &RobotConfig::controller_frame, text(), "",
+      "Link whose frame the controller calls its base; needed for vendors' pose formats.");
+  key("driver", &RobotConfig::driver, one_of({"simple_message"}), "",
+      "How joints are read from the controller.");
+  key("host", &RobotConfig::host, text(), "", "Name or address of the robot controller.").required = true;
+  key("port", &RobotConfig::port, integer(1, 65535), "",
+      "State port of the controller (MotoROS 50241; FANUC and ABB 11002).");
+  key("byte_order", &RobotConfig::byte_order, one_of({"big", "little"}), "",
+      "Byte order of the controller (FS100 big; DX100, DX200, YRC1000 little).");
+  key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0.");
+  key("joints_stale_after", &RobotConfig::joints_stale_after, duration(50ms, 10s), "",
+      "Joints older than this are not used.");
+  key("reconnect_after", &RobotConfig::reconnect_after, duration(500ms, 60s), "",
+      "Silence after which the connection is made anew.");
+}
+
+void declare_joints(std::vector<Setting>& table) {
+  SectionDeclarer<JointConfig> key(
+      table, {"robot", "joints", "*"},
+      [](Config& c, const Names& n) -> JointConfig& { return c.robot.joints[n[0]]; });
+  key("index", &JointConfig::index, integer(-1, 9), "",
+      "Place of this joint in the controller's message, from 0. -1: its place in the model.");
+  key("sign", &JointConfig::sign, sign(), "",
+      "1, or -1 where controller and model turn in opposite directions.");
+  key("scale", &JointConfig::scale, real(-1e6, 1e6), "", "Model units per controller unit.");
+  key("offset_deg", &JointConfig::offset_deg, real(-720, 720), "deg",
+      "Model position where the controller says 0.");
+}
+
+void declare_coupling(std::vector<Setting>& table) {
+  Setting setting;
+  setting.path = {"robot", "joints", "*", "coupling", "*"};
+  const auto kind = real(-1e3, 1e3);
+  setting.type = kind.name;
+  setting.meaning = "Factor by which another joint moves this one (FANUC: joint_3 follows joint_2).";
+  setting.set = [kind](Config& config, const Names& names, const RawValue& raw) -> Status {
+    auto value = kind.read(raw);
+    if (!value) return value.error();
+    config.robot.joints[names[0]].coupling[names[1]] = *value;
+    return Done{};
+  };
+  setting.toml = [kind](const Config& config, const Names& names) {
+    const auto joint = config.robot.joints.find(names[0]);
+    if (joint == config.robot.joints.end() || !joint->second.coupling.contains(names[1]))
+      return std::string();
+    return kind.write(joint->second.coupling.at(names[1]));
+  };
+  table.push_back(std::move(setting));
+}
+
+void declare_sensors(std::vector<Setting>& table) {
+  SectionDeclarer<SensorConfig> key(
+      table, {"sensors", "*"}, [](Config& c, const Names& n) -> SensorConfig& { return c.sensors[n[0]]; });
+  key("driver", &SensorConfig::driver, one_of({"openni2"}), "", "How frames are read.");
+  key("uri", &SensorConfig::uri, text(), "", "OpenNI2 device URI. Empty: the first device found.");
+  key("oni_file", &SensorConfig::oni_file, path(), "", "Recording to play instead of a device.");
+  key("driver_directory", &SensorConfig::driver_directory, path(), "",
+      "Folder with the OpenNI2 driver (lib*.so.0) to use. Empty: those of the system.");
+  key("image", &SensorConfig::image, one_of({"infrared", "color", "none"}), "",
+      "Image stream read beside the depth.");
+  const auto camera = [](auto member) {
+    return [member](SensorConfig & sensor) -> auto& { return sensor.camera.*member; };
+  };
+  key("width", camera(&CameraModel::width), integer(16, 8192), "px",
+      "Width of the depth image; set on the device.");
+  key("height", camera(&CameraModel::height), integer(16, 8192), "px",
+      "Height of the depth image; set on the device.");
+  key("fps", &SensorConfig::fps, integer(1, 120), "1/s", "Frame rate set on the device.");
+  key("fx", camera(&CameraModel::fx), positive_real(), "px",
+      "Focal length. What the device reports is not used: drivers report wrong fields of view.")
+      .required = true;
+  key("fy", camera(&CameraModel::fy), positive_real(), "px", "Focal length.").required = true;
+  key("cx", camera(&CameraModel::cx), positive_real(), "px",
+      "Principal point; the centre of the first pixel is 0.")
+      .required = true;
+  key("cy", camera(&CameraModel::cy), positive_real(), "px", "Principal point.").required = true;
+  key("distortion", camera(&CameraModel::distortion), five_reals(), "",
+      "k1, k2, p1, p2, k3 as OpenCV defines them.");
+  key("depth_scale", &SensorConfig::depth_scale, real(1e-6, 1), "m", "Metres per unit of the depth image.");
+  key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
+      "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
+  key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
+      "Rough T_base_sensor to start the first calibration from.");
+}
+
+void declare_pose(std::vector<Setting>& table) {
+  SectionDeclarer<PoseConfig> key(table, {"pose"},
+                                  [](Config& c, const Names&) -> PoseConfig& { return c.pose; });
+  key("max_unverified", &PoseConfig::max_unverified, duration(1s, 24h), "",
+      "A pose whose last passed check is older than this is not served as valid.");
+  key("check_period", &PoseConfig::check_period, duration(100ms, 1h), "",
+      "Time between checks of the pose; one is made only while the robot is still.");
+}
+
+void declare_calibration(std::vector<Setting>& table) {
+  SectionDeclarer<CalibrationConfig> key(
+      table, {"calibration"}, [](Config& c, const Names&) -> CalibrationConfig& { return c.calibration; });
+  key("postures", &CalibrationConfig::postures, integer(1, 50), "",
+      "Postures collected for a calibration when the request names no number.");
+  key("min_posture_distance_deg", &CalibrationConfig::min_posture_distance_deg, real(0.1, 180), "deg",
+      "A posture counts as another one when some joint differs by this much.");
+  key("still_speed_deg_s", &CalibrationConfig::still_speed_deg_s, real(0.001, 10), "deg/s",
+      "The robot is still while no joint is faster than this.");
+  key("settle_time", &CalibrationConfig::settle_time, duration(0ms, 10s), "",
+      "The robot must have been still for this long before a frame.");
+  key("frames_per_posture", &CalibrationConfig::frames_per_posture, integer(1, 60), "",
+      "Frames averaged for each posture.");
+  key("collect_timeout", &CalibrationConfig::collect_timeout, duration(1s, 24h), "",
+      "A calibration that has not seen its postures after this time fails.");
+}
+
+void declare_rest(std::vector<Setting>& table) {
+  SectionDeclarer<StorageConfig> storage(table, {"storage"},
+                                         [](Config& c, const Names&) -> StorageConfig& { return c.storage; });
+  storage("path", &StorageConfig::path, path(), "",
+          "SQLite file with every calibration ever made. Its folder is made when absent.");
+  SectionDeclarer<LogConfig> log(table, {"log"}, [](Config& c, const Names&) -> LogConfig& { return c.log; });
+  log("level", &LogConfig::level, one_of({"trace", "debug", "info", "warn", "error"}), "",
+      "Least severe message that is logged (to stderr).");
+  log("format", &LogConfig::format, one_of({"text", "json"}), "",
+      "text for people, json for one JSON object per line.");
+}
+
+std::vector<Setting> build_table() {
+  std::vector<Setting> table;
+  declare_server(table);
+  declare_robot(table);
+  declare_joints(table);
+  declare_coupling(table);
+  declare_sensors(table);
+  declare_pose(table);
+  declare_calibration(table);
+  declare_rest(table);
+  return table;
+}
+
+}  // namespace
+
+const std::vector<Setting>& settings_table() {
+  static const std::vector<Setting> table = build_table();
+  return table;
+}
+
+}  // namespace calibrd

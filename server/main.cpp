@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "server/calibrate_command.hpp"
+#include "server/config/print_config.hpp"
+#include "server/serve_command.hpp"
+
+namespace {
+
+constexpr int kUsage = 2;
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"calibrd keeps the pose of every fixed 3D sensor of a robot cell true.", "calibrd"};
+  app.set_version_flag("--version", "calibrd " CALIBRD_VERSION);
+  calibrd::ServeOptions serve_options;
+  calibrd::add_serve_options(app, serve_options);
+  auto* serve = app.add_subcommand("serve", "Run the daemon");
+  calibrd::add_serve_options(*serve, serve_options);
+  calibrd::CalibrateOptions calibrate_options;
+  auto* calibrate = app.add_subcommand("calibrate", "Calibrate a recording and print the result as JSON");
+  calibrd::add_calibrate_options(*calibrate, calibrate_options);
+  auto* reference = app.add_subcommand("config-reference", "Print docs/configuration.md");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& failure) {
+    return app.exit(failure) == 0 ? 0 : kUsage;
+  }
+  if (reference->parsed()) {
+    std::cout << calibrd::config_reference();
+    return 0;
+  }
+  if (calibrate->parsed()) return calibrd::run_calibrate(calibrate_options);
+  if (serve->parsed() || serve_options.check_config || serve_options.print_config)
+    return calibrd::run_serve(serve_options);
+  std::cerr << app.help();
+  return kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const std::exception& failure) {
+    std::cerr << "calibrd: unexpected failure: " << failure.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+
+#include "api/problem/api_error.hpp"
+#include "api/service/cell_service.hpp"
+
+namespace calibrd::api {
+
+/// A cell whose answers a test sets: one sensor, "kinect2".
+class FakeCell : public CellService {
+ public:
+  PoseReport pose_report;
+  RobotReport robot_report;
+  SensorReport sensor_report;
+  Cloud cloud_report;
+  std::function<Result<CalibrationReport>(const CalibrationRequest&)> on_start;
+  std::function<Result<CaptureArchive>(const CaptureRequest&)> on_capture;
+  CalibrationReport calibration_report;
+  mutable HistoryQuery last_history;
+  std::string cancelled, activated;
+
+  FakeCell() {
+    pose_report.sensor_id = sensor_report.id = "kinect2";
+    pose_report.base_frame = robot_report.base_frame = "base_link";
+    pose_report.sensor_frame = "kinect2_optical";
+    sensor_report.health = "streaming";
+    robot_report.link_state = "streaming";
+    calibration_report.id = "c1";
+    calibration_report.sensor_id = "kinect2";
+  }
+
+  void make_calibrated() {
+    CalibrationResult result;
+    result.verdict = Verdict::accepted;
+    result.T_base_sensor = Pose(Eigen::Translation3d(1, 2, 3));
+    result.sigma_position_m = 0.001;
+    pose_report.known =
+        PoseReport::Known{"c1", std::chrono::system_clock::now() - std::chrono::seconds(90), result};
+    pose_report.state = PoseState::calibrated;
+    pose_report.valid = true;
+    pose_report.passed_check_age = Seconds(0.5);
+    pose_report.last_check = CheckReport{true, 0.97, 0.001, Seconds(0.5)};
+  }
+
+  CellReport cell() const override { return {"0", Seconds(1), robot_report, {sensor_report}}; }
+  std::vector<SensorReport> sensors() const override { return {sensor_report}; }
+  Result<SensorReport> sensor(std::string_view id) const override { return of_sensor(id, sensor_report); }
+  Result<PoseReport> pose(std::string_view id) const override { return of_sensor(id, pose_report); }
+  RobotReport robot() const override { return robot_report; }
+  Result<CalibrationReport> start_calibration(const CalibrationRequest& request) override {
+    if (request.sensor_id != "kinect2") return fail(ApiError::no_such_sensor, request.sensor_id);
+    return on_start ? on_start(request) : Result<CalibrationReport>(calibration_report);
+  }
+  Result<CalibrationReport> calibration(std::string_view id) const override { return of_calibration(id); }
+  Result<CalibrationReport> cancel_calibration(std::string_view id) override {
+    cancelled = id;
+    return of_calibration(id);
+  }
+  Result<CalibrationReport> activate_calibration(std::string_view id) override {
+    activated = id;
+    return of_calibration(id);
+  }
+  Result<HistoryPage> history(const HistoryQuery& query) const override {
+    last_history = query;
+    return of_sensor(query.sensor_id, HistoryPage{{calibration_report}, true});
+  }
+  Result<CaptureArchive> record_capture(const CaptureRequest& request) override {
+    return on_capture ? on_capture(request) : Result<CaptureArchive>(CaptureArchive{"a.tar", "tar bytes"});
+  }
+  Result<Cloud> cloud(const CloudRequest& request) const override {
+    return of_sensor(request.sensor_id, cloud_report);
+  }
+
+ private:
+  template <class T>
+  Result<T> of_sensor(std::string_view id, T value) const {
+    if (id != "kinect2") return fail(ApiError::no_such_sensor, std::string(id));
+    return value;
+  }
+  Result<CalibrationReport> of_calibration(std::string_view id) const {
+    if (id != "c1") return fail(ApiError::no_such_calibration, std::string(id));
+    return calibration_report;
+  }
+};
+
+}  // namespace calibrd::api

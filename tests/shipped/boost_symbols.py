@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fails when two Boosts meet in one program.
+
+On Debian 12 PCL is compiled against Boost 1.74 and everything else against 1.81. The linker keeps one of
+two weak symbols of the same name, without a word, whichever Boost it came from. So no object may see both
+Boosts, and no weak symbol that speaks of boost may be defined on both sides. The shared objects of PCL
+count to the side of the system's Boost: a weak symbol of a program takes the place of theirs.
+
+usage: boost_symbols.py BUILD_DIRECTORY NINJA
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Iterable, NamedTuple
+
+SYSTEM, PRIVATE = "system", "private"
+WEAK_KINDS = frozenset("VWvwu")
+
+
+class BoostUse(NamedTuple):
+    """Objects by the Boost they were compiled against."""
+
+    system: list[str]
+    private: list[str]
+    both: list[str]
+
+
+def side_of(header: str) -> str | None:
+    if "/boost/" not in header:
+        return None
+    return SYSTEM if header.startswith("/usr/include/boost/") else PRIVATE
+
+
+def sort_objects(ninja_deps: str) -> BoostUse:
+    """Reads `ninja -t deps`: an object per paragraph, then an indented line per header."""
+    use = BoostUse([], [], [])
+    for paragraph in ninja_deps.split("\n\n"):
+        first, *headers = paragraph.strip().splitlines() or [""]
+        sides = {side_of(header.strip()) for header in headers} - {None}
+        name = first.split(":")[0]
+        if sides == {SYSTEM, PRIVATE}:
+            use.both.append(name)
+        elif sides:
+            (use.system if sides == {SYSTEM} else use.private).append(name)
+    return use
+
+
+def weak_boost_symbols(nm: str) -> set[str]:
+    """The weak symbols in `nm` output in whose mangled name boost:: occurs."""
+    found = set()
+    for line in nm.splitlines():
+        parts = line.split()
+        if len(parts) == 3 and parts[1] in WEAK_KINDS and "5boost" in parts[2]:
+            found.add(parts[2])
+    return found
+
+
+def run(*command: str, cwd: Path | None = None) -> str:
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False).stdout
+
+
+def symbols_of(objects: Iterable[str], build: Path) -> set[str]:
+    return set().union(*(weak_boost_symbols(run("nm", "--defined-only", name, cwd=build)) for name in objects
+                         if (build / name).is_file()))
+
+
+def system_libraries(build: Path) -> set[str]:
+    """The shared objects of PCL that the programs of this build load."""
+    programs = [path for path in (build / "bin").glob("*") if path.is_file()]
+    loaded = "\n".join(run("ldd", str(program)) for program in programs)
+    return set(re.findall(r"=> (\S*/libpcl_\S+)", loaded))
+
+
+def check(build: Path, ninja: str) -> tuple[list[str], str]:
+    """What is wrong, and what was looked at."""
+    use = sort_objects(run(ninja, "-t", "deps", cwd=build))
+    if not use.private:
+        return [], f"one Boost only: {len(use.system)} objects use the system's, none a private one"
+    libraries = system_libraries(build)
+    system = symbols_of(use.system, build)
+    for library in libraries:
+        system |= weak_boost_symbols(run("nm", "-D", "--defined-only", library))
+    private = symbols_of(use.private, build)
+    found = [f"{name}: sees both Boosts" for name in use.both]
+    found += [f"weak on both sides: {name}" for name in run("c++filt", *sorted(system & private)).splitlines()
+              if system & private]
+    return found, (f"{len(use.system)} objects and {len(libraries)} libraries use the system's Boost "
+                   f"({len(system)} weak symbols), {len(use.private)} objects the private one ({len(private)})")
+
+
+def main() -> int:
+    if len(sys.argv) != 3:
+        print(__doc__, file=sys.stderr)
+        return 2
+    found, looked_at = check(Path(sys.argv[1]), sys.argv[2])
+    print("\n".join([looked_at, *found[:50]]))
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""Shows that the checks of the shipped binaries find what they are there to find."""
+
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from boost_symbols import sort_objects, symbols_of, weak_boost_symbols
+from linked_libraries import complaints, shipped_binaries
+
+DEPS = """a.o: #deps 2, deps mtime 1 (VALID)
+    ../a.cpp
+    /usr/include/boost/config.hpp
+
+b.o: #deps 2, deps mtime 1 (VALID)
+    /src/.deps/boost/usr/include/boost/json.hpp
+    /usr/include/pcl/point_cloud.h
+
+c.o: #deps 2, deps mtime 1 (VALID)
+    /usr/include/boost/config.hpp
+    ../.deps/boost/usr/include/boost/json.hpp
+
+d.o: #deps 1, deps mtime 1 (VALID)
+    ../d.cpp
+"""
+
+
+class LinkedLibraries(unittest.TestCase):
+    def test_accepts_what_a_daemon_needs(self):
+        self.assertEqual(complaints("calibrd", "\tlibpcl_common.so.1.13 => /lib/libpcl_common.so.1.13 (0x1)\n"), [])
+
+    def test_finds_qt_vtk_and_heavy_parts_of_pcl(self):
+        for name in ("libQt5Core.so.5", "libvtkCommonCore-9.1.so.1", "libpcl_io.so.1.13", "libpcl_features.so.1.13"):
+            self.assertEqual(complaints("calibrd", f"\t{name} => /lib/{name} (0x1)\n"), [f"calibrd: needs {name}"])
+
+    def test_finds_a_missing_library(self):
+        self.assertEqual(len(complaints("calibrd", "\tliba.so => not found\n")), 1)
+
+    def test_programs_are_shipped_tests_are_not(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for place in ("bin", "tests"):
+                Path(folder, place).mkdir()
+                shutil.copy("/bin/true", Path(folder, place, "program"))
+            self.assertEqual([p.parent.name for p in shipped_binaries(Path(folder))], ["bin"])
+
+
+class BoostSymbols(unittest.TestCase):
+    def test_sorts_objects_by_the_boost_they_saw(self):
+        use = sort_objects(DEPS)
+        self.assertEqual((use.system, use.private, use.both), (["a.o"], ["b.o"], ["c.o"]))
+
+    def test_reads_weak_symbols_of_boost_alone(self):
+        nm = "00 W _ZN5boost1fEv\n00 V _ZTIN5boost1AE\n00 u _ZN5boost1gE\n00 T _ZN5boost1hEv\n00 W _ZN3stdv\n"
+        self.assertEqual(weak_boost_symbols(nm), {"_ZN5boost1fEv", "_ZTIN5boost1AE", "_ZN5boost1gE"})
+
+    def test_finds_a_weak_symbol_that_two_objects_share(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, value in (("a", 74), ("b", 81)):
+                code = f"namespace boost {{ inline int version() {{ return {value}; }} }} int {name}() {{ return boost::version(); }}"
+                subprocess.run(["c++", "-x", "c++", "-c", "-", "-o", f"{folder}/{name}.o"], input=code, text=True, check=True)
+            shared = symbols_of(["a.o"], Path(folder)) & symbols_of(["b.o"], Path(folder))
+            self.assertEqual(shared, {"_ZN5boost7versionEv"})
+
+
+if __name__ == "__main__":
+    unittest.main()
