@@ -80,6 +80,9 @@ class Refiner {
     const RangeSettings range = range_settings(stage);
     ContourSettings contour;
     contour.search_px = contour.kernel_px = stage.contour_search_px;
+    // Once profiles are fitted, what lies several sigmas away is another edge.
+    if (stage.fit_profile)
+      contour.kernel_px = std::clamp(kKernelSigmas * contour_sigma_px_, 0.7, stage.contour_search_px);
     contour.stride = 2;
     contour.fit_profile = stage.fit_profile;
     contour.shift_px = result_.contour_shift_px;
@@ -120,6 +123,8 @@ class Refiner {
       result_.range_correlation = sums.range.correlation_factor();
       result_.contour_correlation = sums.contour.correlation_factor();
     }
+    if (!sums.contour_tally.residuals_px.empty())
+      contour_sigma_px_ = robust_sigma(sums.contour_tally.residuals_px);
     NormalEquations all = sums.range.scaled(range_weight(sums));
     all.merge(contour_part(sums));
     if (scatter_is_noise)
@@ -220,6 +225,7 @@ class Refiner {
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
   double period_start_m_ = 0;
+  double contour_sigma_px_ = 0.5;
   bool small_step_ = false;
 };
 
