@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <utility>
 #include <variant>
@@ -23,14 +24,16 @@ LinkShell::LinkShell(const asio::any_io_executor& executor, const std::string& h
       events_(std::move(events)) {}
 
 void LinkShell::start() {
-  const std::lock_guard lock(mutex_);
-  obey(machine_.start(Clock::now()));
+  asio::post(socket_.get_executor(), [self = shared_from_this()] {
+    const std::lock_guard lock(self->mutex_);
+    self->obey(self->machine_.start(Clock::now()));
+  });
 }
 
 void LinkShell::stop() {
   const std::lock_guard lock(mutex_);
   obey(machine_.stop());
-  stopped_ = true;
+  stopped_ = true;  // completions still under way find it set and do nothing
   timer_.cancel();
 }
 

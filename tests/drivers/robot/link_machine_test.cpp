@@ -403,6 +403,24 @@ TEST_F(LinkMachineTest, DoesNotArmTheTimerWithEveryMessage) {
   EXPECT_EQ(armed, 0);
 }
 
+TEST_F(LinkMachineTest, ANewConnectionDoesNotLiveOnOldJoints) {
+  start_and_connect();
+  receive(cycle());
+  obey(machine_.on_closed({}, now_));
+  EXPECT_FALSE(machine_.health().status_fresh);
+  EXPECT_EQ(pause(), 50ms);
+  obey(machine_.on_connected(now_));
+  EXPECT_EQ(state(), State::connecting);
+  EXPECT_FALSE(machine_.health().status_fresh);
+}
+
+TEST_F(LinkMachineTest, KeepsTheWordsOfAnUnexplainedFailure) {
+  obey(machine_.start(now_));
+  const auto failure = std::make_error_code(std::errc::too_many_files_open);
+  obey(machine_.on_connect_failed(failure, now_));
+  EXPECT_TRUE(machine_.health().reason.starts_with(failure.message()));
+}
+
 TEST_F(LinkMachineTest, IgnoresLateEventsOfAnEndedConnection) {
   start_and_connect();
   obey(machine_.on_closed({}, now_));
@@ -417,6 +435,7 @@ TEST_F(LinkMachineTest, StopClosesAndIsFinal) {
   start_and_connect();
   obey(machine_.stop());
   EXPECT_TRUE(asked_to<link_step::Close>());
+  EXPECT_TRUE(reason_is(RobotLinkError::stopped));
   obey(machine_.stop());
   EXPECT_TRUE(last_.empty());
   receive(cycle());

@@ -94,6 +94,15 @@ TEST_F(LinkShellTest, SendsWhatACodecWantsToSay) {
   EXPECT_EQ(connection.receive(12), bytes_of("how are you?"));
 }
 
+TEST_F(LinkShellTest, RestsBetweenMessages) {
+  start(std::make_unique<SimpleMessageCodec>(SimpleMessageSettings{}));
+  PeerConnection connection = connect();
+  for (int i = 0; i < 4; ++i) {
+    connection.send(simple_message::live_first_cycle("bswap/feedback"));
+    EXPECT_LT(context_.run_for(100ms), 20u) << "completions";
+  }
+}
+
 TEST_F(LinkShellTest, MayOutliveItsExecutorsLastRun) {
   start(std::make_unique<TalkingCodec>());
   PeerConnection connection = connect();
