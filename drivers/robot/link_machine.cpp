@@ -132,7 +132,7 @@ void LinkMachine::take(CodecOutput& output, Clock::time_point now) {
   }
   if (output.status) {
     status_stamp_ = output.status->stamp;
-    steps_.push_back(link_step::DeliverStatus{std::move(*output.status)});
+    steps_.push_back(link_step::DeliverStatus{*output.status});
   }
   if (!output.reply.empty()) steps_.push_back(link_step::Send{std::move(output.reply)});
 }
