@@ -50,7 +50,6 @@ class Framer {
   std::size_t frame_size_ = 0;  // 0 until the length is known
   bool complete_ = false;
   bool first_frame_ = true;
-  std::optional<Error> broken_;
 };
 
 }  // namespace calibrd::simple_message

@@ -66,13 +66,19 @@ class LinkShellTest : public testing::Test {
 TEST_F(LinkShellTest, StampsWithTheArrivalNotWithTheReading) {
   start(std::make_unique<SimpleMessageCodec>(SimpleMessageSettings{}));
   PeerConnection connection = connect();
-  const auto sent = Clock::now();
-  connection.send(simple_message::live_first_cycle("bswap/feedback"));
-  const auto arrived_by = Clock::now() + 5ms;
-  std::this_thread::sleep_until(sent + 100ms);  // the process is busy elsewhere
-  ASSERT_TRUE(run_until([&] { return recorder_.joints.size() == 1; }));
-  EXPECT_GE(recorder_.joints[0].stamp, sent - 1ms);
-  EXPECT_LE(recorder_.joints[0].stamp, arrived_by);
+  // Linux begins to stamp a moment after the first socket has asked for it, so the first message may miss
+  // out.
+  bool stamped_with_arrival = false;
+  for (std::size_t count = 1; count <= 20 && !stamped_with_arrival; ++count) {
+    const auto before = Clock::now();
+    connection.send(simple_message::live_first_cycle("bswap/feedback"));
+    const auto after = Clock::now();
+    std::this_thread::sleep_until(after + 100ms);  // the process is busy elsewhere
+    ASSERT_TRUE(run_until([&] { return recorder_.joints.size() == count; }));
+    const auto stamp = recorder_.joints.back().stamp;
+    stamped_with_arrival = stamp > before - 1ms && stamp < after + 50ms;
+  }
+  EXPECT_TRUE(stamped_with_arrival);
 }
 
 TEST_F(LinkShellTest, DeliversOneSampleOfABacklogTheNewest) {
@@ -92,6 +98,15 @@ TEST_F(LinkShellTest, SendsWhatACodecWantsToSay) {
   connection.send(bytes_of("how are you?"));
   ASSERT_TRUE(run_until([&] { return shell_->health().messages == 12; }));
   EXPECT_EQ(connection.receive(12), bytes_of("how are you?"));
+}
+
+TEST_F(LinkShellTest, RestsBetweenMessages) {
+  start(std::make_unique<SimpleMessageCodec>(SimpleMessageSettings{}));
+  PeerConnection connection = connect();
+  for (int i = 0; i < 4; ++i) {
+    connection.send(simple_message::live_first_cycle("bswap/feedback"));
+    EXPECT_LT(context_.run_for(100ms), 20u) << "completions";
+  }
 }
 
 TEST_F(LinkShellTest, MayOutliveItsExecutorsLastRun) {

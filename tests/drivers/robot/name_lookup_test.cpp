@@ -6,6 +6,7 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <optional>
 
 #include "drivers/robot/robot_link_error.hpp"
@@ -54,15 +55,33 @@ TEST(NameLookup, SaysWhenThereIsNoSuchHost) {
 }
 
 TEST(NameLookup, AnswersNobodyAfterCancel) {
-  bool answered = false;
-  {
-    boost::asio::io_context context;
-    NameLookup lookup(context.get_executor(), "localhost", 50241);
-    lookup.start([&](const auto&, const auto&) { answered = true; });
-    lookup.cancel();
-    context.run();
+  for (const char* host : {"localhost", "127.0.0.1"}) {
+    bool answered = false;
+    {
+      boost::asio::io_context context;
+      NameLookup lookup(context.get_executor(), host, 50241);
+      lookup.start([&](const auto&, const auto&) { answered = true; });
+      lookup.cancel();
+      context.run();
+    }
+    EXPECT_FALSE(answered) << host;
   }
-  EXPECT_FALSE(answered);
+}
+
+TEST(NameLookup, ASecondCallTakesThePlaceOfTheFirst) {
+  boost::asio::io_context context;
+  NameLookup lookup(context.get_executor(), "localhost", 50241);
+  const auto work = boost::asio::make_work_guard(context);
+  int first = 0;
+  int second = 0;
+  lookup.start([&](const auto&, const auto&) { ++first; });
+  lookup.start([&](const auto&, const auto&) {
+    ++second;
+    context.stop();
+  });
+  context.run_for(std::chrono::seconds(10));
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(second, 1);
 }
 
 }  // namespace

@@ -2,83 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/robot/state_client.hpp"
 
-#include <gtest/gtest.h>
+#include <boost/asio/thread_pool.hpp>
 
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <optional>
-#include <thread>
-
-#include "drivers/robot/robot_link_error.hpp"
-#include "tests/drivers/robot/state_peer.hpp"
-#include "tests/drivers/robot/vectors.hpp"
+#include "tests/drivers/robot/state_client_fixture.hpp"
 
 namespace calibrd {
 namespace {
 
 using namespace std::chrono_literals;
-using State = RobotLinkHealth::State;
 using Bytes = std::vector<std::byte>;
-
-/// One cycle of joints and status as a live server sent it, big endian.
-const Bytes& cycle() {
-  static const Bytes bytes = simple_message::live_first_cycle("bswap/feedback");
-  return bytes;
-}
-
-/// A client with short times on a thread of its own, and the controller it talks to.
-class StateClientTest : public testing::Test {
- protected:
-  StateClientTest() {
-    settings_.host = "127.0.0.1";
-    settings_.port = peer_.port();
-    settings_.joint_count = 7;
-    settings_.link.stale_after = 100ms;
-    settings_.link.reconnect_after = 300ms;
-    settings_.link.connect_timeout = 300ms;
-    settings_.link.backoff_first = 2ms;
-    settings_.link.backoff_cap = 10ms;
-    settings_.link.eviction_within = 0ms;
-  }
-  ~StateClientTest() override {
-    client_.reset();
-    context_.stop();
-    if (thread_.joinable()) thread_.join();
-  }
-  void start() {
-    auto created = StateClient::create(context_.get_executor(), settings_, recorder_.events());
-    ASSERT_TRUE(created) << created.error().message();
-    client_.emplace(std::move(*created));
-    client_->start();
-    thread_ = std::thread([this] {
-      const auto work = boost::asio::make_work_guard(context_);
-      context_.run();
-    });
-  }
-  /// stop() returns within 100 ms and nothing is told afterwards.
-  void expect_prompt_stop() {
-    const auto begin = Clock::now();
-    client_->stop();
-    EXPECT_LT(Clock::now() - begin, 100ms);
-    const std::size_t told = recorder_.event_count();
-    client_->stop();
-    EXPECT_FALSE(peer_.somebody_connects_within(50ms));
-    EXPECT_EQ(recorder_.event_count(), told);
-  }
-  bool wait_for_reason(RobotLinkError error) {
-    const std::string reason = make_error_code(error).message();
-    return recorder_.wait_for(
-        [&] { return !recorder_.reports.empty() && recorder_.reports.back().reason.ends_with(reason); });
-  }
-
-  StatePeer peer_;
-  StateClientSettings settings_;
-  LinkRecorder recorder_;
-  boost::asio::io_context context_;
-  std::optional<StateClient> client_;
-  std::thread thread_;
-};
 
 TEST_F(StateClientTest, DeliversJointsAndStatus) {
   start();
@@ -149,11 +81,13 @@ TEST_F(StateClientTest, ReportsStaleJointsWhileTheStatusLives) {
   connection.send(cycle());
   ASSERT_TRUE(recorder_.wait_for([&] { return recorder_.statuses.size() == 1; }));
   const Bytes status(cycle().begin() + 148, cycle().end());
-  for (std::size_t count = 2; client_->health().state != State::joints_stale; ++count) {
+  const auto stale = [](const RobotLinkHealth& told) {
+    return told.state == State::joints_stale && told.status_fresh;
+  };
+  for (std::size_t count = 2; !recorder_.has_report(stale); ++count) {
     connection.send(status);
     ASSERT_TRUE(recorder_.wait_for([&] { return recorder_.statuses.size() >= count; }));
   }
-  EXPECT_TRUE(client_->health().status_fresh);
 }
 
 TEST_F(StateClientTest, DiagnosesTheByteOrder) {
@@ -173,7 +107,7 @@ TEST_F(StateClientTest, ReconnectsAfterRubbishAndReadsOn) {
   ASSERT_TRUE(recorder_.wait_for_state(State::faulted));
   connection = peer_.accept();
   connection.send(cycle());
-  ASSERT_TRUE(recorder_.wait_for_state(State::streaming));
+  ASSERT_TRUE(recorder_.wait_for_joints(2));
   EXPECT_EQ(client_->health().framing_errors, 1u);
 }
 
@@ -216,83 +150,18 @@ TEST_F(StateClientTest, SurvivesTwoHundredDisconnectsWithoutGrowing) {
   EXPECT_EQ(recorder_.joints.back().sequence, 200u);
 }
 
-TEST_F(StateClientTest, StopsWhileItStreams) {
-  start();
-  PeerConnection connection = peer_.accept();
-  connection.send(cycle());
-  ASSERT_TRUE(recorder_.wait_for_joints(1));
-  expect_prompt_stop();
-}
-
-TEST_F(StateClientTest, StopsWhileThePeerIsSilent) {
-  settings_.link.reconnect_after = 60s;
-  start();
-  PeerConnection connection = peer_.accept();
-  ASSERT_TRUE(recorder_.wait_for_state(State::silent));
-  expect_prompt_stop();
-}
-
-TEST_F(StateClientTest, StopsWhileItPausesBetweenAttempts) {
-  settings_.link.backoff_first = settings_.link.backoff_cap = 60s;
-  peer_.stop_listening();
-  start();
-  ASSERT_TRUE(wait_for_reason(RobotLinkError::refused));
-  peer_.listen_again();
-  expect_prompt_stop();
-}
-
-TEST_F(StateClientTest, StopsBeforeItsExecutorEverRan) {
-  auto created = StateClient::create(context_.get_executor(), settings_, recorder_.events());
+TEST_F(StateClientTest, WorksOnAPoolOfThreads) {
+  boost::asio::thread_pool pool(3);
+  auto created = StateClient::create(pool.get_executor(), settings_, recorder_.events());
   ASSERT_TRUE(created);
   created->start();
-  created->stop();
-  context_.run();
-  EXPECT_EQ(recorder_.event_count(), 1u) << "connecting, told by start()";
-  EXPECT_FALSE(peer_.somebody_connects_within(0ms));
-}
-
-TEST_F(StateClientTest, MayBeStoppedByItsOwnHandler) {
-  RobotLinkEvents events = recorder_.events();
-  events.on_joints = [&, record = events.on_joints](const ControllerJoints& joints) {
-    client_->stop();
-    record(joints);
-  };
-  auto created = StateClient::create(context_.get_executor(), settings_, events);
-  ASSERT_TRUE(created);
-  client_.emplace(std::move(*created));
-  client_->start();
-  thread_ = std::thread([this] { context_.run(); });
-  PeerConnection connection = peer_.accept();
-  connection.send(cycle());
-  ASSERT_TRUE(recorder_.wait_for_joints(1));
-  EXPECT_TRUE(connection.client_closes_without_a_word());
-  thread_.join();
-  EXPECT_TRUE(recorder_.reports.size() == 1) << "nothing after stop()";
-}
-
-/// A listener whose queue is full drops connection requests: no answer comes, as from a host that is switched
-/// off.
-class DeafControllerTest : public StateClientTest {
- protected:
-  DeafControllerTest() {
-    settings_.port = deaf_.port();
-    waiting_.connect({boost::asio::ip::address_v4::loopback(), deaf_.port()});
+  for (std::size_t i = 1; i <= 50; ++i) {
+    PeerConnection connection = peer_.accept();
+    connection.send(cycle());
+    ASSERT_TRUE(recorder_.wait_for_joints(i));
   }
-  StatePeer deaf_{0};
-  boost::asio::io_context unused_;
-  boost::asio::ip::tcp::socket waiting_{unused_};
-};
-
-TEST_F(DeafControllerTest, GivesUpAnAttemptAndSaysSo) {
-  start();
-  EXPECT_TRUE(wait_for_reason(RobotLinkError::no_answer));
-}
-
-TEST_F(DeafControllerTest, StopsWhileItConnects) {
-  settings_.link.connect_timeout = 60s;
-  start();
-  ASSERT_TRUE(recorder_.wait_for_state(State::connecting));
-  expect_prompt_stop();
+  created->stop();
+  EXPECT_EQ(recorder_.joints.back().sequence, 50u);
 }
 
 TEST(StateClient, RefusesPortsThatCommandTheRobot) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -72,8 +73,18 @@ class LinkRecorder {
   bool wait_for_joints(std::size_t count) {
     return wait_for([&] { return joints.size() >= count; });
   }
+  template <class Condition>
+  bool wait_for_report(Condition condition) {
+    return wait_for([&] { return std::ranges::any_of(reports, condition); });
+  }
+  /// Waits until that state has been told, now or before.
   bool wait_for_state(RobotLinkHealth::State state) {
-    return wait_for([&] { return !reports.empty() && reports.back().state == state; });
+    return wait_for_report([&](const RobotLinkHealth& told) { return told.state == state; });
+  }
+  template <class Condition>
+  bool has_report(Condition condition) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(reports, condition);
   }
   std::size_t event_count() {
     const std::lock_guard lock(mutex_);
