@@ -158,11 +158,11 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : id_(std::exchange(other.id_, 0)), end_(std::move(other.end_)), messages_(std::move(other.messages_)) {}
 
 ChildProcess::~ChildProcess() {
-  constexpr int kMoment_ms = 200;
+  constexpr std::chrono::milliseconds kMoment(200);
   if (id_ == 0 || reap()) return;
   signal(SIGKILL);
   pollfd ended{end_.get(), POLLIN, 0};
-  ::poll(&ended, 1, kMoment_ms);
+  ::poll(&ended, 1, static_cast<int>(kMoment.count()));
   reap();
 }
 

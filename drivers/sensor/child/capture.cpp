@@ -160,10 +160,10 @@ void Capture::accept(bool is_image, Pairing& pairing) {
   auto frame = (is_image ? image_ : depth_)->read();
   if (!frame.isValid()) return;
   const Moment moment = moment_of(frame);
-  if (is_image) return pairing.add_image(std::move(frame), moment);
+  if (is_image) return pairing.add_image(frame, moment);
   last_index_ = moment.index;
   if (const auto sequence = numbering_.number(moment))
-    pairing.add_depth({std::move(frame), *sequence, stamp}, moment, stamp);
+    pairing.add_depth({frame, *sequence, stamp}, moment, stamp);
 }
 
 Status Capture::deliver(Pairing::Pair& pair, FrameRingWriter& ring, ParentLink& parent) {

@@ -205,7 +205,8 @@ TEST_F(SensorTest, LeaksNoDescriptorsOverRestarts) {
 }
 
 TEST_F(SensorTest, TheChildInheritsNothing) {
-  const int secret = ::open("/dev/zero", O_RDONLY);  // not close-on-exec
+  const FileDescriptor zero(::open("/dev/zero", O_RDONLY | O_CLOEXEC));
+  const FileDescriptor secret(::fcntl(zero.get(), F_DUPFD, 100));  // without close-on-exec
   ::setenv("CALIBRD_HTTP__TOKEN", "secret", 1);
   start(settings());
   ASSERT_TRUE(frame());
@@ -218,7 +219,6 @@ TEST_F(SensorTest, TheChildInheritsNothing) {
   const std::string environment((std::istreambuf_iterator<char>(file)), {});
   EXPECT_NE(environment.find("LD_LIBRARY_PATH="), std::string::npos);
   EXPECT_EQ(environment.find("secret"), std::string::npos);
-  ::close(secret);
 }
 
 /// A daemon killed outright takes its sensor processes along.
