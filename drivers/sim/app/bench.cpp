@@ -27,7 +27,8 @@ std::size_t triangle_count(const Robot& robot) {
 
 void measure(const World& world, const char* what, int frames, bool infrared) {
   const SensorState& sensor = world.state.sensors[0];
-  const auto pixels = static_cast<std::size_t>(sensor.camera.width) * static_cast<std::size_t>(sensor.camera.height);
+  const auto pixels =
+      static_cast<std::size_t>(sensor.camera.width) * static_cast<std::size_t>(sensor.camera.height);
   std::vector<std::uint16_t> depth(pixels), counts(infrared ? pixels : 0);
   const double before = cpu_ms();
   SensorModel model(world.cell, sensor.camera);
@@ -38,7 +39,8 @@ void measure(const World& world, const char* what, int frames, bool infrared) {
   double worst = 0;
   for (int i = 1; i <= frames; ++i) {
     const double from = cpu_ms();
-    model.expose(world.state, sensor, start_ns + i * 33'333'333LL, static_cast<std::uint64_t>(i), depth, counts);
+    model.expose(world.state, sensor, start_ns + i * 33'333'333LL, static_cast<std::uint64_t>(i), depth,
+                 counts);
     worst = std::max(worst, cpu_ms() - from);
     robot_pixels += model.robot_pixels();
   }
@@ -53,7 +55,8 @@ void measure(const World& world, const char* what, int frames, bool infrared) {
 Status run_bench(const BenchOptions& options) {
   auto world = read_description(options.description, {options.urdf, options.models});
   if (!world) return world.error();
-  if (world->state.sensor_count == 0) return sim_error(SimError::description_invalid, "sensors: none to measure");
+  if (world->state.sensor_count == 0)
+    return sim_error(SimError::description_invalid, "sensors: none to measure");
   const SensorState& sensor = world->state.sensors[0];
   std::cout << sensor.camera.width << "x" << sensor.camera.height << ", robot of "
             << triangle_count(world->cell.robot) << " triangles, " << options.frames << " frames\n";

@@ -15,7 +15,8 @@ struct BenchOptions {
   int frames = 300;
 };
 
-/// Renders frames of the moving robot at 30 Hz of its time, on one thread, and prints the CPU time of each kind.
+/// Renders frames of the moving robot at 30 Hz of its time, on one thread, and prints the CPU time of each
+/// kind.
 Status run_bench(const BenchOptions& options);
 
 }  // namespace calibrd::sim

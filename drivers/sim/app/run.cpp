@@ -52,7 +52,8 @@ Status run_cell(const RunOptions& options) {
   if (!world) return world.error();
 
   asio::io_context io(1);
-  ControllerServer controller(io, [&world]() -> const WorldState& { return world->state(); }, description->controller);
+  ControllerServer controller(
+      io, [&world]() -> const WorldState& { return world->state(); }, description->controller);
   ControlRoutes routes(*world, controller);
   ControlServer control(io, routes);
   if (auto listening = controller.listen(options.controller_port); !listening) return listening;

@@ -36,10 +36,14 @@ unsigned http_status(const Error& error) {
 
 const char* code_name(unsigned status) {
   switch (status) {
-    case 404: return "not_found";
-    case 405: return "method_not_allowed";
-    case 409: return "conflict";
-    default: return "request_invalid";
+    case 404:
+      return "not_found";
+    case 405:
+      return "method_not_allowed";
+    case 409:
+      return "conflict";
+    default:
+      return "request_invalid";
   }
 }
 
@@ -59,7 +63,8 @@ ControlResponse ControlRoutes::handle(const ControlRequest& request) {
   Answer answer = route(request);
   if (answer) return {200, json::serialize(*answer)};
   const unsigned status = http_status(answer.error());
-  return {status, json::serialize(json::object{{"code", code_name(status)}, {"message", answer.error().message()}})};
+  return {status,
+          json::serialize(json::object{{"code", code_name(status)}, {"message", answer.error().message()}})};
 }
 
 ControlRoutes::Answer ControlRoutes::route(const ControlRequest& request) {
@@ -75,9 +80,10 @@ ControlRoutes::Answer ControlRoutes::route(const ControlRequest& request) {
   Fields fields(*body, "", kInvalid);
   if (first == "sensors" && path.size() == 3) return sensor_call(request, path, fields);
   const bool is_drop = path == Path{"controller", "drop"};
-  const bool is_known = is_drop || (first == "objects" && path.size() == 2) ||
-                        (path.size() == 1 && (first == "motion" || first == "joint-zeros" || first == "controller" ||
-                                              first == "person" || first == "other-robot"));
+  const bool is_known =
+      is_drop || (first == "objects" && path.size() == 2) ||
+      (path.size() == 1 && (first == "motion" || first == "joint-zeros" || first == "controller" ||
+                            first == "person" || first == "other-robot"));
   if (!is_known) return sim_error(SimError::not_found, request.target);
   if (request.method != (is_drop ? "POST" : "PUT"))
     return sim_error(SimError::method_not_allowed, request.method + " " + request.target);
@@ -107,7 +113,8 @@ ControlRoutes::Answer ControlRoutes::truth(const std::string& query) const {
   return answer;
 }
 
-ControlRoutes::Answer ControlRoutes::sensor_call(const ControlRequest& request, const Path& path, Fields& fields) {
+ControlRoutes::Answer ControlRoutes::sensor_call(const ControlRequest& request, const Path& path,
+                                                 Fields& fields) {
   WorldState state = world_.state();
   const auto end = state.sensors.begin() + state.sensor_count;
   const auto sensor =
@@ -212,7 +219,8 @@ ControlRoutes::Answer ControlRoutes::drop_clients(Fields& fields) {
 
 ControlRoutes::Answer ControlRoutes::set_object(const std::string& name, Fields& fields) {
   const auto& objects = world_.cell().objects;
-  const auto found = std::find_if(objects.begin(), objects.end(), [&](const Object& o) { return o.name == name; });
+  const auto found =
+      std::find_if(objects.begin(), objects.end(), [&](const Object& o) { return o.name == name; });
   if (found == objects.end()) return sim_error(SimError::not_found, "object " + name);
   WorldState state = world_.state();
   ObjectState& object = state.objects[static_cast<std::size_t>(found - objects.begin())];
@@ -241,7 +249,8 @@ ControlRoutes::Answer ControlRoutes::set_other_robot(Fields& fields) {
   OtherRobotState& other = state.other_robot;
   const std::size_t joints = world_.cell().robot.positions.size();
   Eigen::Isometry3d pose = other.T_base_other.pose();
-  std::vector<double> posture(other.joints.begin(), other.joints.begin() + static_cast<std::ptrdiff_t>(joints));
+  std::vector<double> posture(other.joints.begin(),
+                              other.joints.begin() + static_cast<std::ptrdiff_t>(joints));
   fields.flag("present", other.present);
   fields.numbers("posture_rad", posture, joints);
   read_pose(fields, "T_base_other", pose);

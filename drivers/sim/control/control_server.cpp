@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kBodyLimit = 256 * 1024;
 constexpr std::chrono::seconds kIdle{30};
 
-http::response<http::string_body> respond(const http::request<http::string_body>& request, ControlRoutes& routes) {
+http::response<http::string_body> respond(const http::request<http::string_body>& request,
+                                          ControlRoutes& routes) {
   const ControlResponse answer =
       routes.handle({std::string(request.method_string()), std::string(request.target()), request.body()});
   http::response<http::string_body> response{http::int_to_status(answer.status), request.version()};
@@ -72,7 +73,8 @@ Status ControlServer::listen(std::uint16_t port) {
   if (!failed) acceptor_.bind(endpoint, failed);
   if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
   if (failed)
-    return sim_error(SimError::cannot_listen, "control port " + std::to_string(port) + " (" + failed.message() + ")");
+    return sim_error(SimError::cannot_listen,
+                     "control port " + std::to_string(port) + " (" + failed.message() + ")");
   port_ = acceptor_.local_endpoint().port();
   asio::co_spawn(acceptor_.get_executor(), accept_all(acceptor_, routes_), asio::detached);
   return Done{};

@@ -10,7 +10,8 @@
 
 namespace calibrd::sim {
 
-/// Serves ControlRoutes over HTTP on 127.0.0.1, on the thread that runs `io`. Stop `io` before this goes away.
+/// Serves ControlRoutes over HTTP on 127.0.0.1, on the thread that runs `io`. Stop `io` before this goes
+/// away.
 class ControlServer {
  public:
   ControlServer(boost::asio::io_context& io, ControlRoutes& routes) : routes_(routes), acceptor_(io) {}

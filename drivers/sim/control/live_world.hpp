@@ -9,7 +9,8 @@
 
 namespace calibrd::sim {
 
-/// The world while it runs: the simulator's own copy, and the file that shows it to the OpenNI2 driver. One thread.
+/// The world while it runs: the simulator's own copy, and the file that shows it to the OpenNI2 driver. One
+/// thread.
 class LiveWorld {
  public:
   /// Errors: world_unwritable.
@@ -30,7 +31,8 @@ class LiveWorld {
   void beat() { file_.beat(monotonic_ns()); }
 
  private:
-  LiveWorld(const World& world, WorldFile file) : cell_(world.cell), state_(world.state), file_(std::move(file)) {}
+  LiveWorld(const World& world, WorldFile file)
+      : cell_(world.cell), state_(world.state), file_(std::move(file)) {}
 
   Cell cell_;
   WorldState state_;

@@ -34,8 +34,8 @@ json::object sensor_json(const SensorState& sensor) {
 json::object motion_json(const WorldState& state, std::size_t joints, std::int64_t at_ns) {
   constexpr double kMoving_rad_s = 1e-4;
   const Joints speeds = state.motion.velocities_at(at_ns);
-  const bool moving = std::any_of(speeds.begin(), speeds.end(),
-                                  [](double speed) { return std::abs(speed) > kMoving_rad_s; });
+  const bool moving =
+      std::any_of(speeds.begin(), speeds.end(), [](double speed) { return std::abs(speed) > kMoving_rad_s; });
   return {{"moving", moving}, {"velocities_rad_s", joints_json(speeds, joints)}};
 }
 

@@ -20,7 +20,8 @@ struct ControllerServer::Client {
   std::deque<Bytes> queue;  // the front is being sent
 };
 
-ControllerServer::ControllerServer(asio::io_context& io, WorldSource world, const ControllerSettings& settings)
+ControllerServer::ControllerServer(asio::io_context& io, WorldSource world,
+                                   const ControllerSettings& settings)
     : io_(io), world_(std::move(world)), settings_(settings), acceptor_(io), timer_(io) {}
 
 ControllerServer::~ControllerServer() { stop(); }
@@ -29,7 +30,8 @@ Status ControllerServer::listen(std::uint16_t port) {
   port_ = port;
   if (settings_.mode != ControllerSettings::Mode::refuse || port == 0) {
     if (auto opened = open_port(); !opened) return opened;
-    if (settings_.mode == ControllerSettings::Mode::refuse) acceptor_.close();  // the port number is now known
+    if (settings_.mode == ControllerSettings::Mode::refuse)
+      acceptor_.close();  // the port number is now known
   }
   wait_for_cycle();
   return Done{};
@@ -45,7 +47,8 @@ Status ControllerServer::open_port() {
   if (failed) {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
-    return sim_error(SimError::cannot_listen, "controller port " + std::to_string(port_) + " (" + failed.message() + ")");
+    return sim_error(SimError::cannot_listen,
+                     "controller port " + std::to_string(port_) + " (" + failed.message() + ")");
   }
   port_ = acceptor_.local_endpoint().port();
   accept_next();

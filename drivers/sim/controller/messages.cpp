@@ -70,7 +70,8 @@ Bytes joint_feedback_message(ByteOrder order, const FeedbackRecord& record) {
 Bytes joint_feedback_ex_message(ByteOrder order, std::span<const FeedbackRecord> records) {
   Message message(order, kJointFeedbackEx);
   message.integer(static_cast<std::int32_t>(records.size()));
-  for (std::size_t i = 0; i < kExRecords; ++i) add(message, i < records.size() ? records[i] : FeedbackRecord{});
+  for (std::size_t i = 0; i < kExRecords; ++i)
+    add(message, i < records.size() ? records[i] : FeedbackRecord{});
   return message.finish();
 }
 

@@ -29,8 +29,8 @@ struct StatusRecord {
                motion_possible = 1;
 };
 
-// Whole messages of simple_message (topics), length field first. The simulator's own encoder: it shares nothing with
-// the client's codec, both are checked against the same recorded bytes.
+// Whole messages of simple_message (topics), length field first. The simulator's own encoder: it shares
+// nothing with the client's codec, both are checked against the same recorded bytes.
 Bytes joint_position_message(ByteOrder order, std::int32_t sequence, const TenJoints& joints_rad);
 Bytes joint_feedback_message(ByteOrder order, const FeedbackRecord& record);
 /// Always four records on the wire; at most four may be given.

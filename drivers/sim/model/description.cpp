@@ -62,7 +62,8 @@ Status read_object(Fields fields, World& world) {
   if (box.empty() == cylinder.empty()) fields.fail("box_m", "either box_m or cylinder_m");
   if (auto read = fields.finish(); !read) return read;
   object.mesh = box.empty() ? make_cylinder(cylinder[0], cylinder[1]) : make_box(Eigen::Vector3d(box.data()));
-  object.surface = {static_cast<float>(albedo), static_cast<float>(texture), static_cast<std::uint32_t>(index + 100)};
+  object.surface = {static_cast<float>(albedo), static_cast<float>(texture),
+                    static_cast<std::uint32_t>(index + 100)};
   state.T_base_object = PoseValues::of(pose);
   world.cell.objects.push_back(std::move(object));
   ++world.state.object_count;
@@ -80,7 +81,8 @@ Status read_sensor(Fields fields, World& world, std::int64_t now_ns) {
   read_pose(fields, "T_base_sensor", pose);
   fields.number("rate_hz", sensor.rate_hz, 0.1, 120);
   fields.number("latency_s", sensor.latency_s, 0, 10);
-  Fields camera = fields.object("camera"), depth = fields.object("depth_errors"), image = fields.object("infrared");
+  Fields camera = fields.object("camera"), depth = fields.object("depth_errors"),
+         image = fields.object("infrared");
   read_camera(camera, sensor.camera);
   read_depth_errors(depth, sensor.depth);
   read_infrared_errors(image, sensor.infrared);
@@ -120,7 +122,8 @@ Status read_other_robot(Fields fields, World& world) {
 }
 
 Status read_dynamics(Fields& fields, World& world, std::int64_t now_ns) {
-  Fields person = fields.object("person"), controller = fields.object("controller"), motion = fields.object("motion");
+  Fields person = fields.object("person"), controller = fields.object("controller"),
+         motion = fields.object("motion");
   std::vector<double> zeros(world.cell.robot.positions.size());
   fields.numbers("joint_zero_rad", zeros, zeros.size());
   std::copy(zeros.begin(), zeros.end(), world.state.joint_zero_rad.begin());
@@ -154,7 +157,8 @@ Result<World> parse_description(const std::string& text, const std::filesystem::
   Fields fields(*value, "", kInvalid);
   std::string note;
   fields.text("note", note);
-  if (auto read = read_robot_part(fields.object("robot"), folder, options, world, now_ns); !read) return read.error();
+  if (auto read = read_robot_part(fields.object("robot"), folder, options, world, now_ns); !read)
+    return read.error();
   const auto object = [&](Fields part) { return read_object(std::move(part), world); };
   const auto sensor = [&](Fields part) { return read_sensor(std::move(part), world, now_ns); };
   if (auto read = read_list(fields, "objects", object); !read) return read.error();

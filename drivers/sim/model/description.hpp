@@ -25,7 +25,8 @@ struct DescriptionOptions {
 };
 
 /// Reads a world description (JSON; docs/simulator.md lists the keys) and the robot it names. A relative
-/// robot.urdf is looked up beside the description. Errors: description_*, those of read_robot, no_free_posture.
+/// robot.urdf is looked up beside the description. Errors: description_*, those of read_robot,
+/// no_free_posture.
 Result<World> read_description(const std::filesystem::path& path, const DescriptionOptions& options);
 
 /// As read_description, from text; `folder` is where relative paths start.

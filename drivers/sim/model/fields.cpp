@@ -30,7 +30,8 @@ bool collect_numbers(const json::value& value, std::vector<double>& out) {
 
 }  // namespace
 
-Fields::Fields(const json::value& value, std::string where, SimError code) : where_(std::move(where)), code_(code) {
+Fields::Fields(const json::value& value, std::string where, SimError code)
+    : where_(std::move(where)), code_(code) {
   object_ = value.if_object();
   if (object_ == nullptr) {
     object_ = empty_object().if_object();
@@ -64,7 +65,8 @@ void Fields::number(std::string_view key, double& value, double low, double high
   const double number = found->is_number() ? found->to_number<double>() : std::nan("");
   if (!std::isfinite(number) || number < low || number > high) {
     std::string expected = "a number";
-    if (low > -kAny || high < kAny) expected += " from " + std::to_string(low) + " to " + std::to_string(high);
+    if (low > -kAny || high < kAny)
+      expected += " from " + std::to_string(low) + " to " + std::to_string(high);
     return fail(key, expected);
   }
   value = number;

@@ -14,8 +14,9 @@
 
 namespace calibrd::sim {
 
-/// Reads a JSON object key by key into defaults, and remembers the first thing wrong with it: a value of the wrong
-/// kind or out of range, or (at finish) a key nobody asked for. A key that is absent leaves the default alone.
+/// Reads a JSON object key by key into defaults, and remembers the first thing wrong with it: a value of the
+/// wrong kind or out of range, or (at finish) a key nobody asked for. A key that is absent leaves the default
+/// alone.
 class Fields {
  public:
   /// `where` is what messages call this object; `code` the error they carry.

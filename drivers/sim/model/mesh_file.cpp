@@ -67,7 +67,8 @@ void append_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& ab
 Mesh by_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices);
+  const aiScene* scene =
+      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices);
   Mesh mesh;
   if (scene != nullptr && scene->mRootNode != nullptr) append_node(*scene, *scene->mRootNode, {}, mesh);
   return mesh;

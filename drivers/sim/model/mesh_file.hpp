@@ -9,9 +9,9 @@
 
 namespace calibrd::sim {
 
-/// Reads a mesh: binary STL by itself, anything else (Collada, OBJ, ASCII STL) by Assimp. `scale` multiplies the
-/// coordinates. Collada's unit is honoured, its up-axis ignored, as the robotics world does.
-/// Errors: mesh_unreadable.
+/// Reads a mesh: binary STL by itself, anything else (Collada, OBJ, ASCII STL) by Assimp. `scale` multiplies
+/// the coordinates. Collada's unit is honoured, its up-axis ignored, as the robotics world does. Errors:
+/// mesh_unreadable.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const Eigen::Vector3d& scale);
 
 }  // namespace calibrd::sim

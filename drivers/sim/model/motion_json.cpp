@@ -28,9 +28,11 @@ Status jog(const MotionCommand& command, const Cell& cell, WorldState& state, st
   const auto& positions = cell.robot.positions;
   const auto found = command.joint.empty()
                          ? positions.begin()
-                         : std::find_if(positions.begin(), positions.end(),
-                                        [&](const PositionRange& range) { return range.name == command.joint; });
-  if (found == positions.end()) return sim_error(SimError::request_invalid, "joint: no joint " + command.joint);
+                         : std::find_if(positions.begin(), positions.end(), [&](const PositionRange& range) {
+                             return range.name == command.joint;
+                           });
+  if (found == positions.end())
+    return sim_error(SimError::request_invalid, "joint: no joint " + command.joint);
   const auto index = static_cast<std::size_t>(found - positions.begin());
   const Joints here = state.motion.positions_at(now_ns);
   Joints low = here, high = here;
@@ -73,7 +75,8 @@ Status apply_motion(const MotionCommand& command, const Cell& cell, WorldState& 
     case MotionCommand::Mode::jog:
       return jog(command, cell, state, now_ns);
     case MotionCommand::Mode::postures:
-      state.motion.visit(command.postures, Profile::minimum_jerk, command.speed_rad_s, command.hold_s, now_ns);
+      state.motion.visit(command.postures, Profile::minimum_jerk, command.speed_rad_s, command.hold_s,
+                         now_ns);
       return Done{};
     case MotionCommand::Mode::hold:
     case MotionCommand::Mode::resume:

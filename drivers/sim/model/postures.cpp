@@ -13,7 +13,7 @@ namespace {
 constexpr double kMargin_m = 0.03;
 constexpr std::size_t kPointsPerLink = 150;
 constexpr double kPathStep_rad = 0.15;
-constexpr double kUsedRange = 0.75;    // part of a joint's range that postures are drawn from
+constexpr double kUsedRange = 0.75;  // part of a joint's range that postures are drawn from
 constexpr double kWidest_rad = 1.5;
 constexpr int kTries = 4000;
 
@@ -26,7 +26,9 @@ bool is_moved(const Robot& robot, std::size_t link) {
   return false;
 }
 
-Joints draw(const Robot& robot, Random& random) {
+}  // namespace
+
+Joints random_posture(const Robot& robot, Random& random) {
   Joints q{};
   for (std::size_t j = 0; j < robot.positions.size(); ++j) {
     const auto& range = robot.positions[j];
@@ -36,8 +38,6 @@ Joints draw(const Robot& robot, Random& random) {
   }
   return q;
 }
-
-}  // namespace
 
 Clearance::Clearance(const Cell& cell, std::span<const ObjectState> objects) : robot_(cell.robot) {
   for (std::size_t l = 0; l < robot_.links.size(); ++l) {
@@ -83,15 +83,16 @@ bool Clearance::is_free_between(const Joints& from, const Joints& to) const {
   return true;
 }
 
-Result<std::vector<Joints>> random_postures(const Cell& cell, std::span<const ObjectState> objects, Random& random,
-                                            std::size_t count, const Joints& start) {
+Result<std::vector<Joints>> random_postures(const Cell& cell, std::span<const ObjectState> objects,
+                                            Random& random, std::size_t count, const Joints& start) {
   const Clearance clearance(cell, objects);
   std::vector<Joints> postures;
   for (int i = 0; i < kTries && postures.size() < count; ++i) {
-    const Joints q = draw(cell.robot, random);
+    const Joints q = random_posture(cell.robot, random);
     const Joints& before = postures.empty() ? start : postures.back();
     if (!clearance.is_free(q) || !clearance.is_free_between(before, q)) continue;
-    if (postures.size() + 1 == count && count > 1 && !clearance.is_free_between(q, postures.front())) continue;
+    if (postures.size() + 1 == count && count > 1 && !clearance.is_free_between(q, postures.front()))
+      continue;
     postures.push_back(q);
   }
   if (postures.size() < count) return sim_error(SimError::no_free_posture, cell.robot.name);

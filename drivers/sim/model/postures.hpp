@@ -34,9 +34,12 @@ class Clearance {
   std::vector<Block> blocks_;
 };
 
-/// `count` postures within the joint limits, clear of the objects, each reachable from the one before (and the
-/// first from `start` and from the last). The same for the same `random`. Errors: no_free_posture.
-Result<std::vector<Joints>> random_postures(const Cell& cell, std::span<const ObjectState> objects, Random& random,
-                                            std::size_t count, const Joints& start);
+/// Within the middle of the joint ranges; may touch anything.
+Joints random_posture(const Robot& robot, Random& random);
+
+/// `count` postures within the joint limits, clear of the objects, each reachable from the one before (and
+/// the first from `start` and from the last). The same for the same `random`. Errors: no_free_posture.
+Result<std::vector<Joints>> random_postures(const Cell& cell, std::span<const ObjectState> objects,
+                                            Random& random, std::size_t count, const Joints& start);
 
 }  // namespace calibrd::sim

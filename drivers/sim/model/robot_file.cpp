@@ -27,15 +27,16 @@ Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
   double roll = 0, pitch = 0, yaw = 0;
   pose.rotation.getRPY(roll, pitch, yaw);
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
+  result.linear() =
+      (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
   result.translation() = vector_of(pose.position);
   return result;
 }
 
-std::optional<fs::path> find_mesh(const std::string& name, const fs::path& urdf, const RobotFileOptions& options) {
+std::optional<fs::path> find_mesh(const std::string& name, const fs::path& urdf,
+                                  const RobotFileOptions& options) {
   constexpr std::string_view kPackage = "package://", kFile = "file://";
   std::string relative = name;
   if (name.starts_with(kPackage)) relative = name.substr(kPackage.size());
@@ -70,7 +71,8 @@ Result<Mesh> surface_of(const urdf::Link& link, const fs::path& urdf, const Robo
   std::vector<std::pair<urdf::Pose, urdf::GeometrySharedPtr>> parts;
   for (const auto& visual : link.visual_array) parts.emplace_back(visual->origin, visual->geometry);
   if (parts.empty())
-    for (const auto& collision : link.collision_array) parts.emplace_back(collision->origin, collision->geometry);
+    for (const auto& collision : link.collision_array)
+      parts.emplace_back(collision->origin, collision->geometry);
   Mesh whole;
   for (const auto& [origin, geometry] : parts) {
     if (!geometry) continue;

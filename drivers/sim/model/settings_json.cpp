@@ -27,7 +27,8 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& position, const Eigen::Vector3d
 
 Eigen::Matrix3d from_rpy(const Eigen::Vector3d& rpy_deg) {
   const Eigen::Vector3d rpy = rpy_deg * std::numbers::pi / 180;
-  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
       .toRotationMatrix();
 }
@@ -107,7 +108,12 @@ void read_camera(Fields& fields, CameraParameters& camera) {
 }
 
 json::object camera_json(const CameraParameters& c) {
-  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy},
+  return {{"width", c.width},
+          {"height", c.height},
+          {"fx", c.fx},
+          {"fy", c.fy},
+          {"cx", c.cx},
+          {"cy", c.cy},
           {"distortion", json::array(c.distortion.begin(), c.distortion.end())}};
 }
 
@@ -139,7 +145,8 @@ json::object controller_json(const ControllerSettings& s) {
 
 void read_person(Fields& fields, PersonState& person, std::int64_t now_ns) {
   const bool was_present = person.present != 0;
-  std::vector<double> from(person.from_m.begin(), person.from_m.end()), to(person.to_m.begin(), person.to_m.end());
+  std::vector<double> from(person.from_m.begin(), person.from_m.end()),
+      to(person.to_m.begin(), person.to_m.end());
   fields.flag("present", person.present);
   fields.numbers("from_m", from, 2);
   fields.numbers("to_m", to, 2);
@@ -152,7 +159,8 @@ void read_person(Fields& fields, PersonState& person, std::int64_t now_ns) {
 
 void read_pose(Fields& fields, std::string_view matrix, Eigen::Isometry3d& pose) {
   fields.matrix(matrix, pose);
-  Eigen::Vector3d position = pose.translation(), target = Eigen::Vector3d::Zero(), rpy = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position = pose.translation(), target = Eigen::Vector3d::Zero(),
+                  rpy = Eigen::Vector3d::Zero();
   double roll_rad = 0;
   fields.vector("position_m", position);
   fields.vector("target_m", target);

@@ -38,7 +38,7 @@ struct MotionCommand {
     postures,  ///< the stated postures, for ever
   } mode = Mode::hold;
   std::uint64_t seed = 1;
-  std::int32_t count = 12;       ///< of random postures
+  std::int32_t count = 12;  ///< of random postures
   double speed_rad_s = 0.5;
   double hold_s = 1.0;
   std::string joint;             ///< to jog; empty: the first

@@ -74,7 +74,8 @@ std::optional<WorldState> SimDevice::world_now() const {
 }
 
 void SimDevice::wait_while_hanging() {
-  for (auto state = world_now(); state && state->sensors[sensor_].mode == SensorMode::hanging; state = world_now())
+  for (auto state = world_now(); state && state->sensors[sensor_].mode == SensorMode::hanging;
+       state = world_now())
     std::this_thread::sleep_for(kHangPoll);
 }
 
@@ -82,7 +83,8 @@ void SimDevice::wake() { changed_.notify_all(); }
 
 bool SimDevice::any_started() {
   const std::lock_guard lock(mutex_);
-  return std::any_of(streams_.begin(), streams_.end(), [](SimStream* stream) { return stream->is_started(); });
+  return std::any_of(streams_.begin(), streams_.end(),
+                     [](SimStream* stream) { return stream->is_started(); });
 }
 
 /// False when the device is being closed.
@@ -91,11 +93,13 @@ bool SimDevice::wait_until(std::int64_t time_ns) {
   return !changed_.wait_until(lock, time_point_of(time_ns), [this] { return closing_; });
 }
 
-void SimDevice::expose(const WorldState& state, std::int64_t exposure_ns, std::int64_t frame, Images& images) {
+void SimDevice::expose(const WorldState& state, std::int64_t exposure_ns, std::int64_t frame,
+                       Images& images) {
   bool infrared = false;
   {
     const std::lock_guard lock(mutex_);
-    for (SimStream* stream : streams_) infrared = infrared || (stream->type() == ONI_SENSOR_IR && stream->is_started());
+    for (SimStream* stream : streams_)
+      infrared = infrared || (stream->type() == ONI_SENSOR_IR && stream->is_started());
   }
   if (!model_) model_ = std::make_unique<SensorModel>(world_->cell(), camera_);
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
@@ -110,7 +114,8 @@ void SimDevice::deliver(const Images& images, std::int64_t exposure_ns, std::int
   for (SimStream* stream : streams_) {
     const auto& pixels = stream->type() == ONI_SENSOR_DEPTH ? images.depth : images.infrared;
     if (!pixels.empty())
-      stream->deliver(pixels, static_cast<std::uint64_t>(exposure_ns / 1000), static_cast<int>(frame - first_frame_));
+      stream->deliver(pixels, static_cast<std::uint64_t>(exposure_ns / 1000),
+                      static_cast<int>(frame - first_frame_));
   }
 }
 
@@ -131,7 +136,8 @@ void SimDevice::run() {
       if (!wait_until(exposure_ns + std::llround(state->sensors[sensor_].latency_s * 1e9))) return;
       deliver(images, exposure_ns, frame);
     }
-    frame = std::max(frame + 1, frame_after(monotonic_ns()));  // too slow a machine loses frames, as a sensor does
+    frame = std::max(frame + 1,
+                     frame_after(monotonic_ns()));  // too slow a machine loses frames, as a sensor does
   }
 }
 

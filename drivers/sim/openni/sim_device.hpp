@@ -16,8 +16,8 @@
 
 namespace calibrd::sim {
 
-/// A simulated sensor that a client has opened. A thread of its own exposes the world at the sensor's rate and
-/// hands the images over, as late as the sensor's latency says.
+/// A simulated sensor that a client has opened. A thread of its own exposes the world at the sensor's rate
+/// and hands the images over, as late as the sensor's latency says.
 class SimDevice final : public oni::driver::DeviceBase {
  public:
   SimDevice(std::shared_ptr<const WorldView> world, std::size_t sensor, const SensorState& at_start);

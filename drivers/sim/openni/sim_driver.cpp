@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// The simulated sensor as OpenNI2 sees it: libcalibrd_sim.so.0. CALIBRD_SIM_WORLD names the world it looks into.
+// The simulated sensor as OpenNI2 sees it: libcalibrd_sim.so.0. CALIBRD_SIM_WORLD names the world it looks
+// into.
 #include <array>
 #include <condition_variable>
 #include <csignal>
@@ -116,7 +117,7 @@ class SimDriver final : public oni::driver::DriverBase {
 
   WorldWatch watch_;
   std::array<std::shared_ptr<const WorldView>, kMaxSensors> announced_;  // initialize()'s, then the thread's
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;                                                     // guards what follows
   std::condition_variable wake_;
   std::map<SimDevice*, std::uint32_t> open_;
   bool ending_ = false;

@@ -12,8 +12,8 @@ namespace calibrd::sim {
 
 class SimDevice;
 
-/// The depth or the infrared stream of a simulated sensor. Calls come from OpenNI2's threads, deliver() from the
-/// device's.
+/// The depth or the infrared stream of a simulated sensor. Calls come from OpenNI2's threads, deliver() from
+/// the device's.
 class SimStream final : public oni::driver::StreamBase {
  public:
   SimStream(SimDevice& device, OniSensorType type, const CameraParameters& camera, double rate_hz);

@@ -23,7 +23,8 @@ std::vector<Body> standing_bodies(const Cell& cell, const WorldState& state) {
   std::vector<Body> bodies;
   for (std::size_t o = 0; o < cell.objects.size(); ++o)
     if (state.objects[o].present != 0)
-      bodies.push_back({&cell.objects[o].mesh, cell.objects[o].surface, state.objects[o].T_base_object.pose(), false});
+      bodies.push_back(
+          {&cell.objects[o].mesh, cell.objects[o].surface, state.objects[o].T_base_object.pose(), false});
   if (state.other_robot.present != 0)
     add_robot(cell.robot, state.other_robot.joints, state.other_robot.T_base_other.pose(), false, bodies);
   return bodies;

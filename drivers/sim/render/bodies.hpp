@@ -18,11 +18,12 @@ struct Body {
   bool is_robot = false;  ///< of the robot that follows the joints
 };
 
-/// What stands still as long as nobody moves it: the objects and the other robot. `cell` must outlive the result.
+/// What stands still as long as nobody moves it: the objects and the other robot. `cell` must outlive the
+/// result.
 std::vector<Body> standing_bodies(const Cell& cell, const WorldState& state);
 
-/// What moves by itself: the robot, at its true joints, and the person. `cell` and `person` (person_parts()) must
-/// outlive the result.
+/// What moves by itself: the robot, at its true joints, and the person. `cell` and `person` (person_parts())
+/// must outlive the result.
 std::vector<Body> moving_bodies(const Cell& cell, const std::vector<Mesh>& person, const WorldState& state,
                                 std::int64_t now_ns);
 

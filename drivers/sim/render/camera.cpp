@@ -8,7 +8,8 @@
 namespace calibrd::sim {
 
 Camera::Camera(const CameraParameters& parameters)
-    : p_(parameters), distorted_(std::any_of(p_.distortion.begin(), p_.distortion.end(), [](double k) { return k != 0; })) {}
+    : p_(parameters),
+      distorted_(std::any_of(p_.distortion.begin(), p_.distortion.end(), [](double k) { return k != 0; })) {}
 
 Eigen::Vector2d Camera::distorted(double x, double y) const {
   const auto& [k1, k2, p1, p2, k3] = p_.distortion;

@@ -20,25 +20,26 @@ double axial_noise_m(double z_m, double incidence_rad);
 class DepthModel {
  public:
   /// Both fields must outlive it.
-  DepthModel(int width, int height, const NoiseField& white, const NoiseField& correlated);
+  DepthModel(const CameraParameters& camera, const NoiseField& white, const NoiseField& correlated);
 
   /// The depth image in mm, 0 = no measurement. `changed`: where `truth` differs from the call before.
   /// `age_s`: since the sensor was switched on. Deterministic in `random`.
-  void measure(const PixelTruth& truth, const Tiles& changed, const DepthErrors& errors, double age_s, Random& random,
-               std::span<std::uint16_t> depth_mm);
+  void measure(const PixelTruth& truth, const Tiles& changed, const DepthErrors& errors, double age_s,
+               Random& random, std::span<std::uint16_t> depth_mm);
 
  private:
   void update(const PixelTruth& truth, const DepthErrors& errors, const PixelRect& rect);
-  void add_noise(const DepthErrors& errors, double drift_mm, Random& random, std::span<std::uint16_t> depth_mm);
-  void add_edges(const DepthErrors& errors, double drift_mm, Random& random, std::span<std::uint16_t> depth_mm);
+  void add_noise(const DepthErrors& errors, double drift_mm, Random& random,
+                 std::span<std::uint16_t> depth_mm);
+  void add_edges(const DepthErrors& errors, double drift_mm, Random& random,
+                 std::span<std::uint16_t> depth_mm);
 
-  int width_, height_;
+  const int width_, height_;
   const NoiseField &white_, &correlated_;
-  std::vector<std::uint16_t> chance_;  // uniform numbers to hold drop-outs against
-  DepthErrors errors_;                 // that the planes below were made with
+  DepthErrors errors_;  // that the planes below were made with
   bool made_ = false;
   std::vector<float> biased_mm_, sigma_mm_, mixed_mm_;
-  std::vector<std::uint16_t> drop_;    // chance of no measurement, of 65535
+  std::vector<std::uint16_t> drop_;  // chance of no measurement, of 65535
 };
 
 }  // namespace calibrd::sim

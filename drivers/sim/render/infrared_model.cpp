@@ -13,8 +13,11 @@ constexpr float kShot = 1.0F, kRead = 20.0F;
 
 }  // namespace
 
-InfraredModel::InfraredModel(int width, int height, const NoiseField& noise)
-    : width_(width), height_(height), noise_(noise), blurred_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+InfraredModel::InfraredModel(const CameraParameters& camera, const NoiseField& noise)
+    : width_(camera.width),
+      height_(camera.height),
+      noise_(noise),
+      blurred_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
 void InfraredModel::blur(const PixelTruth& truth, const PixelRect& rect) {
   // Three taps (w, 1 - 2w, w) each way have the variance 2w: symmetric, so no edge moves.

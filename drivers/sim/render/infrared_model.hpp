@@ -12,12 +12,12 @@
 
 namespace calibrd::sim {
 
-/// The infrared image a time-of-flight sensor makes beside its depth, lit by its own lamp. Edges are as sharp as a
-/// pixel's area and the lens's blur allow, and lie where they are. One thread.
+/// The infrared image a time-of-flight sensor makes beside its depth, lit by its own lamp. Edges are as sharp
+/// as a pixel's area and the lens's blur allow, and lie where they are. One thread.
 class InfraredModel {
  public:
   /// `noise` (uncorrelated) must outlive it.
-  InfraredModel(int width, int height, const NoiseField& noise);
+  InfraredModel(const CameraParameters& camera, const NoiseField& noise);
 
   /// 16-bit counts. `changed`: where `truth` differs from the call before. Deterministic in `random`.
   void measure(const PixelTruth& truth, const Tiles& changed, const InfraredErrors& errors, Random& random,
@@ -29,7 +29,7 @@ class InfraredModel {
  private:
   void blur(const PixelTruth& truth, const PixelRect& rect);
 
-  int width_, height_;
+  const int width_, height_;
   const NoiseField& noise_;
   double blur_px_ = 0;
   bool made_ = false;

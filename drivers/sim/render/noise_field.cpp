@@ -24,9 +24,10 @@ std::vector<float> summed(const std::vector<float>& in, bool along_rows) {
 
 }  // namespace
 
-NoiseField::NoiseField(bool correlated) : field_(kN * kN) {
+NoiseField::NoiseField(bool correlated) : field_(kN * kN), chances_(kN * kN) {
   Random random(correlated ? 20150703 : 20131121);
   for (float& value : field_) value = static_cast<float>(random.normal() / std::numbers::sqrt2);
+  for (auto& chance : chances_) chance = static_cast<std::uint16_t>(random.bits());
   if (correlated) field_ = summed(summed(field_, true), false);
 }
 
@@ -46,6 +47,10 @@ void NoiseField::row(const Windows& windows, int y, std::span<float> row) const 
   const float* a = &field_[windows.first + static_cast<std::size_t>(y) * kN];
   const float* b = &field_[windows.second + static_cast<std::size_t>(y) * kN];
   for (std::size_t x = 0; x < row.size(); ++x) row[x] = a[x] + b[x];
+}
+
+const std::uint16_t* NoiseField::chances(const Windows& windows, int y) const {
+  return &chances_[windows.first + static_cast<std::size_t>(y) * kN];
 }
 
 }  // namespace calibrd::sim

@@ -9,8 +9,9 @@
 
 namespace calibrd::sim {
 
-/// Standard normal noise for whole images, cheaply: each image is the sum of two windows, at random places, of a
-/// field made once. Neighbouring pixels are independent, or correlated as an average over 3x3 pixels makes them.
+/// Standard normal noise for whole images, cheaply: each image is the sum of two windows, at random places,
+/// of a field made once. Neighbouring pixels are independent, or correlated as an average over 3x3 pixels
+/// makes them.
 class NoiseField {
  public:
   explicit NoiseField(bool correlated);
@@ -25,8 +26,12 @@ class NoiseField {
   /// Noise of row `y` into `row`.
   void row(const Windows& windows, int y, std::span<float> row) const;
 
+  /// Numbers spread evenly over 0..65535 for the pixels of row `y`.
+  const std::uint16_t* chances(const Windows& windows, int y) const;
+
  private:
   std::vector<float> field_;
+  std::vector<std::uint16_t> chances_;
 };
 
 }  // namespace calibrd::sim

@@ -14,8 +14,8 @@ constexpr double kNear_m = 0.02;
 constexpr double kBulge = 0.1;  // of a triangle's size in the image: how far a lens bends its edges, amply
 constexpr double kSlack_px = 1e-3;
 
-/// The edge functions and the plane of one triangle, rounded to float once and the same way for both triangles at an
-/// edge, so that they never leave a gap between them.
+/// The edge functions and the plane of one triangle, rounded to float once and the same way for both
+/// triangles at an edge, so that they never leave a gap between them.
 struct Planes {
   std::array<float, 3> e0, e1, e2, normal;
   float offset;
@@ -36,7 +36,9 @@ Lanes load(const T* from) {
   return lanes;
 }
 
-Floats along(const std::array<float, 3>& plane, Floats x, Floats y) { return plane[0] * x + plane[1] * y + plane[2]; }
+Floats along(const std::array<float, 3>& plane, Floats x, Floats y) {
+  return plane[0] * x + plane[1] * y + plane[2];
+}
 
 void fill_four(const Planes& t, const float* ray_x, const float* ray_y, std::uint32_t facet, float* depth,
                std::uint32_t* facets) {
@@ -89,7 +91,8 @@ PixelRect Rasterizer::bounds(const Vertex& a, const Vertex& b, const Vertex& c, 
     high.array() += margin;
   } else if (a.point.z() > kNear_m && b.point.z() > kNear_m && c.point.z() > kNear_m) {
     const auto pinhole = [&](const Vertex& v) {
-      return Eigen::Vector2d(p.cx + p.fx * v.point.x() / v.point.z(), p.cy + p.fy * v.point.y() / v.point.z());
+      return Eigen::Vector2d(p.cx + p.fx * v.point.x() / v.point.z(),
+                             p.cy + p.fy * v.point.y() / v.point.z());
     };
     const Eigen::Vector2d pa = pinhole(a), pb = pinhole(b), pc = pinhole(c);
     low = pa.cwiseMin(pb).cwiseMin(pc).array() - grid_.largest_displacement_px - kSlack_px;
@@ -97,17 +100,19 @@ PixelRect Rasterizer::bounds(const Vertex& a, const Vertex& b, const Vertex& c, 
   }
   low = low.cwiseMax(Eigen::Vector2d(-1, -1));
   high = high.cwiseMin(Eigen::Vector2d(p.width, p.height));
-  // A sample lies at most a third of its pitch off the regular grid, whose middle sample is the pixel's centre.
+  // A sample lies at most a third of its pitch off the regular grid, whose middle sample is the pixel's
+  // centre.
   const auto first = [](double px) { return static_cast<int>(std::ceil(kSubSamples * px + 1 - 1.0 / 3)); };
   const auto last = [](double px) { return static_cast<int>(std::floor(kSubSamples * px + 1 + 1.0 / 3)); };
-  samples = {std::max(first(low.x()), 0), std::max(first(low.y()), 0), std::min(last(high.x()) + 1, grid_.width),
-             std::min(last(high.y()) + 1, grid_.height)};
+  samples = {std::max(first(low.x()), 0), std::max(first(low.y()), 0),
+             std::min(last(high.x()) + 1, grid_.width), std::min(last(high.y()) + 1, grid_.height)};
   return {samples.x0 / kSubSamples - 1, samples.y0 / kSubSamples - 1, (samples.x1 - 1) / kSubSamples + 2,
           (samples.y1 - 1) / kSubSamples + 2};  // one pixel more all round, for the lens's blur
 }
 
-void Rasterizer::fill(const Vertex& a, const Vertex& b, const Vertex& c, double volume, const SampleRect& rect,
-                      std::uint32_t body, SampleBuffer& buffer, std::vector<Facet>& facets) const {
+void Rasterizer::fill(const Vertex& a, const Vertex& b, const Vertex& c, double volume,
+                      const SampleRect& rect, std::uint32_t body, SampleBuffer& buffer,
+                      std::vector<Facet>& facets) const {
   const double side = volume > 0 ? 1 : -1;
   const Eigen::Vector3d normal = side * (b.point - a.point).cross(c.point - a.point);
   const Planes planes{rounded(side * b.point.cross(c.point)), rounded(side * c.point.cross(a.point)),

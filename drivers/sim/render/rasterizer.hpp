@@ -17,22 +17,22 @@ struct Facet {
   std::uint32_t body = 0;
 };
 
-/// z-buffer rasteriser on homogeneous edge functions (Olano and Greer 1997): a sample belongs to a triangle when its
-/// ray does, so the distorted rays need no straight edges in the image and nothing is ever clipped. Both sides of a
-/// triangle are seen, but for solids. One thread.
+/// z-buffer rasteriser on homogeneous edge functions (Olano and Greer 1997): a sample belongs to a triangle
+/// when its ray does, so the distorted rays need no straight edges in the image and nothing is ever clipped.
+/// Both sides of a triangle are seen, but for solids. One thread.
 class Rasterizer {
  public:
   explicit Rasterizer(const SampleGrid& grid) : grid_(grid) {}
 
   /// Draws a mesh into `buffer`, appends its facets to `facets` and marks what it may have touched.
-  void draw(const Mesh& mesh, const Eigen::Isometry3d& T_sensor_body, std::uint32_t body, SampleBuffer& buffer,
-            std::vector<Facet>& facets, Tiles& touched);
+  void draw(const Mesh& mesh, const Eigen::Isometry3d& T_sensor_body, std::uint32_t body,
+            SampleBuffer& buffer, std::vector<Facet>& facets, Tiles& touched);
 
  private:
   struct Vertex {
     Eigen::Vector3d point;  // sensor frame
     Eigen::Vector2d pixel;
-    bool in_view;           // within the range of the rays, where the lens's polynomial can be trusted
+    bool in_view;  // within the range of the rays, where the lens's polynomial can be trusted
   };
   struct SampleRect {
     int x0, y0, x1, y1;

@@ -24,16 +24,16 @@ void each_sample(const SampleGrid& grid, std::size_t first, Visit visit) {
 
 }  // namespace
 
-SceneRenderer::SceneRenderer(const Cell& cell, const CameraParameters& camera)
+SceneRenderer::SceneRenderer(const Cell& cell, const SampleGrid& grid)
     : cell_(cell),
       person_(person_parts()),
-      grid_(camera),
+      grid_(grid),
       rasterizer_(grid_),
       standing_(grid_),
       samples_(grid_),
-      truth_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
-      moved_(camera.width, camera.height),
-      changed_(camera.width, camera.height) {}
+      truth_(grid.pixel_count()),
+      moved_(grid.camera.parameters().width, grid.camera.parameters().height),
+      changed_(moved_) {}
 
 bool SceneRenderer::is_kept_picture_valid(const Key& key) {
   const bool valid = key_ && *key_ == key;
@@ -107,7 +107,8 @@ float SceneRenderer::echo_of(std::size_t sample, float texture) const {
   const Eigen::Vector3f ray(grid_.ray_x[sample], grid_.ray_y[sample], 1);
   const float length2 = ray.squaredNorm();
   // cosine / distance^2 = (-n.ray / |ray|) / (z^2 |ray|^2)
-  return bodies_[facet.body].surface.albedo * texture * -facet.normal.dot(ray) / (z * z * length2 * std::sqrt(length2));
+  return bodies_[facet.body].surface.albedo * texture * -facet.normal.dot(ray) /
+         (z * z * length2 * std::sqrt(length2));
 }
 
 bool SceneRenderer::is_uniform(std::size_t first) const {
@@ -151,8 +152,9 @@ void SceneRenderer::resolve_mixed(std::size_t pixel, std::size_t first) {
 }
 
 void SceneRenderer::resolve_pixel(int x, int y) {
-  const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.camera.parameters().width) +
-                            static_cast<std::size_t>(x);
+  const std::size_t pixel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.camera.parameters().width) +
+      static_cast<std::size_t>(x);
   const std::size_t first = grid_.index(kSubSamples * x, kSubSamples * y);
   const std::size_t centre = grid_.index(kSubSamples * x + 1, kSubSamples * y + 1);
   const bool hit = samples_.depth[centre] != kNothing;

@@ -16,21 +16,22 @@ namespace calibrd::sim {
 struct PixelTruth {
   explicit PixelTruth(std::size_t pixels)
       : depth_m(pixels), cosine(pixels), mixed_m(pixels), echo(pixels), robot(pixels) {}
-  std::vector<float> depth_m;   ///< along the optical axis, through the pixel's centre; 0 = nothing
-  std::vector<float> cosine;    ///< of the incidence at the centre; 0 = nothing
-  std::vector<float> mixed_m;   ///< on edges in depth: what a mixture of all the pixel sees reads; else 0
-  std::vector<float> echo;      ///< albedo * cos / distance^2 over the pixel's whole area, 1/m^2
+  std::vector<float> depth_m;       ///< along the optical axis, through the pixel's centre; 0 = nothing
+  std::vector<float> cosine;        ///< of the incidence at the centre; 0 = nothing
+  std::vector<float> mixed_m;       ///< on edges in depth: what a mixture of all the pixel sees reads; else 0
+  std::vector<float> echo;          ///< albedo * cos / distance^2 over the pixel's whole area, 1/m^2
   std::vector<std::uint8_t> robot;  ///< 1 where the centre sees the robot
 };
 
-/// Renders the cell as one sensor sees it. What stands still is drawn once per sensor pose and kept; each frame
-/// redraws only the tiles in which something moves. One thread; `cell` must outlive it.
+/// Renders the cell as one sensor sees it. What stands still is drawn once per sensor pose and kept; each
+/// frame redraws only the tiles in which something moves. One thread; `cell` and `grid` must outlive it.
 class SceneRenderer {
  public:
-  SceneRenderer(const Cell& cell, const CameraParameters& camera);
+  SceneRenderer(const Cell& cell, const SampleGrid& grid);
 
   /// The cell at one moment. Afterwards truth() and changed() hold for it.
-  void render(const WorldState& state, const Eigen::Isometry3d& T_base_sensor, double texture, std::int64_t now_ns);
+  void render(const WorldState& state, const Eigen::Isometry3d& T_base_sensor, double texture,
+              std::int64_t now_ns);
 
   const PixelTruth& truth() const { return truth_; }
   const Tiles& changed() const { return changed_; }  ///< since the frame before
@@ -60,11 +61,11 @@ class SceneRenderer {
 
   const Cell& cell_;
   std::vector<Mesh> person_;
-  SampleGrid grid_;
+  const SampleGrid& grid_;
   Rasterizer rasterizer_;
   SampleBuffer standing_, samples_;
-  std::vector<Facet> facets_;   // those of the standing bodies first
-  std::vector<Body> bodies_;    // likewise
+  std::vector<Facet> facets_;  // those of the standing bodies first
+  std::vector<Body> bodies_;   // likewise
   std::vector<Eigen::Isometry3f> T_body_sensor_;
   std::size_t standing_facets_ = 0, standing_bodies_ = 0;
   PixelTruth truth_;

@@ -6,12 +6,20 @@
 
 namespace calibrd::sim {
 
-void SensorModel::expose(const WorldState& world, const SensorState& sensor, std::int64_t now_ns, std::uint64_t seed,
-                         std::span<std::uint16_t> depth_mm, std::span<std::uint16_t> counts) {
+SensorModel::SensorModel(const Cell& cell, std::shared_ptr<const SensorTables> tables)
+    : tables_(std::move(tables)),
+      renderer_(cell, tables_->grid),
+      depth_(tables_->grid.camera.parameters(), tables_->white, tables_->correlated),
+      infrared_(tables_->grid.camera.parameters(), tables_->white) {}
+
+void SensorModel::expose(const WorldState& world, const SensorState& sensor, std::int64_t now_ns,
+                         std::uint64_t seed, std::span<std::uint16_t> depth_mm,
+                         std::span<std::uint16_t> counts) {
   renderer_.render(world, sensor.T_base_sensor.pose(), sensor.infrared.texture, now_ns);
   Random random(seed);
   const double age_s = static_cast<double>(now_ns - sensor.powered_ns) * 1e-9;
-  depth_.measure(renderer_.truth(), renderer_.changed(), sensor.depth, std::max(age_s, 0.0), random, depth_mm);
+  depth_.measure(renderer_.truth(), renderer_.changed(), sensor.depth, std::max(age_s, 0.0), random,
+                 depth_mm);
   if (counts.empty())
     infrared_.forget();
   else

@@ -6,8 +6,8 @@
 
 namespace calibrd::sim {
 
-/// Smooth mottling in -1..1 of a point on a body (body frame, m): value noise on a lattice of 4 cm, so that it
-/// sticks to the body when the body moves.
+/// Smooth mottling in -1..1 of a point on a body (body frame, m): value noise on a lattice of 4 cm, so that
+/// it sticks to the body when the body moves.
 float mottling(const Eigen::Vector3f& point_body, std::uint32_t seed);
 
 }  // namespace calibrd::sim

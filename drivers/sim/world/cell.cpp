@@ -48,10 +48,8 @@ struct ByteReader {
 };
 
 template <class Archive, class T>
-  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-void field(Archive& archive, T& value) {
-  archive.plain(value);
-}
+requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void field(Archive& archive, T& value) { archive.plain(value); }
 
 template <class Archive, class T, int Rows, int Cols>
 void field(Archive& archive, Eigen::Matrix<T, Rows, Cols>& matrix) {
@@ -91,8 +89,8 @@ void field(Archive& archive, RobotLink& l) {
 }
 template <class Archive>
 void field(Archive& archive, RobotJoint& j) {
-  fields(archive, j.name, j.movement, j.parent_link, j.child_link, j.T_parent_joint.matrix(), j.axis, j.position,
-         j.multiplier, j.offset);
+  fields(archive, j.name, j.movement, j.parent_link, j.child_link, j.T_parent_joint.matrix(), j.axis,
+         j.position, j.multiplier, j.offset);
 }
 template <class Archive>
 void field(Archive& archive, PositionRange& p) {
@@ -104,7 +102,8 @@ void field(Archive& archive, Object& o) {
 }
 template <class Archive>
 void field(Archive& archive, Cell& c) {
-  fields(archive, c.robot.name, c.robot.base_link, c.robot.links, c.robot.joints, c.robot.positions, c.objects);
+  fields(archive, c.robot.name, c.robot.base_link, c.robot.links, c.robot.joints, c.robot.positions,
+         c.objects);
 }
 
 template <class Archive, class T>

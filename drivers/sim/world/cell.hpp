@@ -11,7 +11,8 @@
 
 namespace calibrd::sim {
 
-/// A thing that stands in the cell: workbench, box, wall. Its place is in WorldState::objects at the same index.
+/// A thing that stands in the cell: workbench, box, wall. Its place is in WorldState::objects at the same
+/// index.
 struct Object {
   std::string name;
   Mesh mesh;

@@ -22,9 +22,9 @@ struct ControllerSettings {
   Protocol protocol = Protocol::motoros;
   std::int32_t big_endian = 1;
   std::int32_t send_velocity = 1;
-  std::int32_t groups = 1;     ///< 1 to 4; the second is the other robot, the rest stand at 0
+  std::int32_t groups = 1;  ///< 1 to 4; the second is the other robot, the rest stand at 0
   double rate_hz = 40;
-  double latency_s = 0.010;    ///< age of the joints when they are sent
+  double latency_s = 0.010;  ///< age of the joints when they are sent
 };
 
 }  // namespace calibrd::sim

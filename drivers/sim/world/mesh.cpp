@@ -50,23 +50,26 @@ bool is_solid(const Mesh& mesh) {
     volume += mesh.vertices[t[0]].cast<double>().dot(
         mesh.vertices[t[1]].cast<double>().cross(mesh.vertices[t[2]].cast<double>()));
   }
-  return volume > 0 && std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+  return volume > 0 &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 void append(Mesh& mesh, const Mesh& part) {
   mesh.solid = part.solid && (mesh.solid || mesh.triangles.empty());
   const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (const auto& t : part.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  for (const auto& t : part.triangles)
+    mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
 }
 
 Mesh make_box(const Eigen::Vector3d& size_m) {
   Mesh mesh;
   for (int corner = 0; corner < 8; ++corner)
-    mesh.vertices.push_back((0.5 * size_m)
-                                .cwiseProduct(Eigen::Vector3d((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                                                              (corner & 4) != 0 ? 1 : -1))
-                                .cast<float>());
+    mesh.vertices.push_back(
+        (0.5 * size_m)
+            .cwiseProduct(Eigen::Vector3d((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                          (corner & 4) != 0 ? 1 : -1))
+            .cast<float>());
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   mesh.solid = is_solid(mesh);

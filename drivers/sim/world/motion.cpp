@@ -81,7 +81,9 @@ double MotionClock::rate_at(std::int64_t now_ns) const {
 }
 
 double MotionClock::time_at(std::int64_t now_ns) const {
-  const double t = std::max(0.0, static_cast<double>(now_ns - start_ns) * kSecondsPerNs);
+  const double t = static_cast<double>(now_ns - start_ns) * kSecondsPerNs;
+  // Before the change: at the rate it had, so that late reports of earlier moments stay what they were.
+  if (t <= 0) return std::max(0.0, program_s + rate_from * t);
   if (t < ramp_s) return program_s + rate_from * t + 0.5 * (rate_to - rate_from) * t * t / ramp_s;
   return program_s + 0.5 * (rate_from + rate_to) * ramp_s + rate_to * (t - ramp_s);
 }

@@ -55,8 +55,8 @@ struct Motion {
   Joints at(std::int64_t now_ns) const { return program.at(clock.time_at(now_ns)); }
 };
 
-/// What the robot does now and, after a commanded change, what it does next: until `switch_ns` it comes to rest
-/// in `current`. Plain data: it travels through shared memory, and both sides evaluate it at any time.
+/// What the robot does now and, after a commanded change, what it does next: until `switch_ns` it comes to
+/// rest in `current`. Plain data: it travels through shared memory, and both sides evaluate it at any time.
 struct MotionPlan {
   Motion current;
   Motion next;
@@ -67,7 +67,8 @@ struct MotionPlan {
   /// Per second, by central difference over 1 ms.
   Joints velocities_at(std::int64_t now_ns) const;
 
-  /// Stops smoothly, then visits `postures` for ever (a single one is where it stays). At most kMaxPostures - 1.
+  /// Stops smoothly, then visits `postures` for ever (a single one is where it stays). At most kMaxPostures
+  /// - 1.
   void visit(std::span<const Joints> postures, Profile profile, double speed_rad_s, double hold_s,
              std::int64_t now_ns);
   /// Brings the robot to rest where it is (0) or lets it go on (1), smoothly.

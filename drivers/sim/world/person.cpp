@@ -14,10 +14,10 @@ constexpr double kHip_m = 0.92;
 constexpr double kShoulder_m = 1.42;
 
 struct Limb {
-  double height_m;   // of the joint it swings about
+  double height_m;  // of the joint it swings about
   double sideways_m;
   double radius_m, length_m;
-  double swing;      // sign and size of its swing
+  double swing;  // sign and size of its swing
 };
 
 constexpr Limb kLimbs[] = {{kHip_m, 0.10, 0.075, 0.76, 1.0},
@@ -35,7 +35,8 @@ Eigen::Isometry3d walker(const PersonState& person, double t_s) {
   const Eigen::Vector2d place = from + (to - from) / length * (back ? 2 * length - way : way);
   Eigen::Isometry3d T_base_walker = Eigen::Isometry3d::Identity();
   T_base_walker.translation() << place, person.floor_z_m;
-  T_base_walker.linear() = Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Eigen::Vector3d::UnitZ()).matrix();
+  T_base_walker.linear() =
+      Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Eigen::Vector3d::UnitZ()).matrix();
   return T_base_walker;
 }
 

@@ -7,8 +7,8 @@
 
 namespace calibrd::sim {
 
-/// SplitMix64 (Steele et al. 2014): a counter with a good hash. The same numbers on every platform and library,
-/// which the distributions of <random> do not promise.
+/// SplitMix64 (Steele et al. 2014): a counter with a good hash. The same numbers on every platform and
+/// library, which the distributions of <random> do not promise.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

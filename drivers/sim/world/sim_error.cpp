@@ -12,7 +12,8 @@ const char* text(SimError error) {
     case SimError::urdf_unreadable:
       return "the robot description cannot be read; give a URDF file with --urdf";
     case SimError::mesh_not_found:
-      return "the mesh file is in none of the model folders; name the folder that holds the package with --models";
+      return "the mesh file is in none of the model folders; name the folder that holds the package with "
+             "--models";
     case SimError::mesh_unreadable:
       return "the mesh cannot be read; give a binary STL or a Collada file with triangles";
     case SimError::no_joints:
@@ -28,7 +29,8 @@ const char* text(SimError error) {
     case SimError::world_unwritable:
       return "the shared world file cannot be written; name a writable place with --world-file";
     case SimError::world_unreadable:
-      return "there is no running simulator behind this world file; start calibrd-sim and set CALIBRD_SIM_WORLD";
+      return "there is no running simulator behind this world file; start calibrd-sim and set "
+             "CALIBRD_SIM_WORLD";
     case SimError::world_mismatch:
       return "the world file was written by another build; use calibrd-sim and the driver of one build";
     case SimError::cannot_listen:

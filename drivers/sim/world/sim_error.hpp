@@ -30,7 +30,9 @@ enum class SimError {
 
 std::error_code make_error_code(SimError error);
 
-inline Error sim_error(SimError code, std::string detail) { return {make_error_code(code), std::move(detail)}; }
+inline Error sim_error(SimError code, std::string detail) {
+  return {make_error_code(code), std::move(detail)};
+}
 
 }  // namespace calibrd::sim
 

@@ -23,30 +23,31 @@ struct PoseValues {
   bool operator==(const PoseValues&) const = default;
 };
 
-/// Pixel (x, y) sees along ((x-cx)/fx, (y-cy)/fy, 1), distortion (k1, k2, p1, p2, k3 as OpenCV) undone. Pixels.
+/// Pixel (x, y) sees along ((x-cx)/fx, (y-cy)/fy, 1), distortion (k1, k2, p1, p2, k3 as OpenCV) undone.
+/// Pixels.
 struct CameraParameters {
   std::int32_t width = 512, height = 424;
   double fx = 365.6, fy = 365.6, cx = 254.9, cy = 205.4;
   std::array<double, 5> distortion{};
 };
 
-/// Errors of the depth: z_measured = scale * z + offset + wiggle * sin(2 pi z / period + phase) + warm-up + noise,
-/// z along the optical axis. Every part can be switched off by its own zero (scale by one).
+/// Errors of the depth: z_measured = scale * z + offset + wiggle * sin(2 pi z / period + phase) + warm-up +
+/// noise, z along the optical axis. Every part can be switched off by its own zero (scale by one).
 struct DepthErrors {
-  double noise = 0;               ///< factor on Fankhauser's axial noise (2015); 1 = as a Kinect v2
-  std::int32_t correlated = 0;    ///< 1: the noise is averaged over 3x3 pixels, its standard deviation kept
-  std::int32_t truncated = 0;     ///< 1: whole mm by cutting off, as libfreenect2 does; 0: by rounding
+  double noise = 0;             ///< factor on Fankhauser's axial noise (2015); 1 = as a Kinect v2
+  std::int32_t correlated = 0;  ///< 1: the noise is averaged over 3x3 pixels, its standard deviation kept
+  std::int32_t truncated = 0;   ///< 1: whole mm by cutting off, as libfreenect2 does; 0: by rounding
   double offset_m = 0;
   double scale = 1;
   double wiggle_m = 0;
   double wiggle_period_m = 0.9375;
   double wiggle_phase_rad = 0;
-  double warmup_m = 0;            ///< offset at switch-on, dies away with `warmup_s`
+  double warmup_m = 0;  ///< offset at switch-on, dies away with `warmup_s`
   double warmup_s = 600;
-  double flying_mixed = 0;        ///< part of the edge pixels that report a mixture of both depths
-  double flying_dropped = 0;      ///< part of the edge pixels that report nothing
-  double dropout = 0;             ///< part of all pixels that report nothing
-  double grazing_deg = 90;        ///< incidence from which pixels begin to drop out; 90 = never
+  double flying_mixed = 0;    ///< part of the edge pixels that report a mixture of both depths
+  double flying_dropped = 0;  ///< part of the edge pixels that report nothing
+  double dropout = 0;         ///< part of all pixels that report nothing
+  double grazing_deg = 90;    ///< incidence from which pixels begin to drop out; 90 = never
   double min_range_m = 0.0;
   double max_range_m = 65.0;
 
@@ -56,10 +57,10 @@ struct DepthErrors {
 
 /// The infrared image: `gain` * albedo * cos(incidence) / distance^2, in counts of 0..65535.
 struct InfraredErrors {
-  double gain = 20000;     ///< counts at 1 m, facing, albedo 1
-  double noise = 0;        ///< factor on shot and read noise; 1 = as a Kinect v2
-  double blur_px = 0;      ///< standard deviation of the lens's blur, at most 0.7
-  double texture = 0;      ///< factor on every surface's mottling
+  double gain = 20000;  ///< counts at 1 m, facing, albedo 1
+  double noise = 0;     ///< factor on shot and read noise; 1 = as a Kinect v2
+  double blur_px = 0;   ///< standard deviation of the lens's blur, at most 0.7
+  double texture = 0;   ///< factor on every surface's mottling
   double saturation = 65535;
 
   static InfraredErrors kinect2();
@@ -76,8 +77,8 @@ struct SensorState {
   DepthErrors depth;
   InfraredErrors infrared;
   SensorMode mode = SensorMode::normal;
-  std::uint32_t crashes = 0;     ///< counts up: every driver alive then crashes once
-  std::int64_t powered_ns = 0;   ///< when it was switched on (warm-up)
+  std::uint32_t crashes = 0;    ///< counts up: every driver alive then crashes once
+  std::int64_t powered_ns = 0;  ///< when it was switched on (warm-up)
 };
 
 struct ObjectState {

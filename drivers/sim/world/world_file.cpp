@@ -24,8 +24,8 @@ using Words = std::array<std::uint64_t, kStateWords>;
 }  // namespace
 
 /// What lies at the start of the file; the cell's bytes follow. Readers and writer are of one build, which
-/// `magic` and `state_size` make sure of. The state is kept in atomic words: a sequence lock over plain memory
-/// would be a data race.
+/// `magic` and `state_size` make sure of. The state is kept in atomic words: a sequence lock over plain
+/// memory would be a data race.
 struct SharedWorld {
   std::uint64_t magic;
   std::uint64_t state_size;
@@ -59,7 +59,8 @@ void* map_file(const std::filesystem::path& path, std::size_t size) {
 
 }  // namespace
 
-Result<WorldFile> WorldFile::create(const std::filesystem::path& path, const Cell& cell, const WorldState& state) {
+Result<WorldFile> WorldFile::create(const std::filesystem::path& path, const Cell& cell,
+                                    const WorldState& state) {
   const std::vector<std::byte> bytes = to_bytes(cell);
   const std::filesystem::path draft = path.string() + "." + std::to_string(::getpid());
   std::error_code ignored;
@@ -110,7 +111,8 @@ void WorldFile::beat(std::int64_t now_ns) { shared_->beat_ns.store(now_ns, std::
 Result<WorldView> WorldView::open(const std::filesystem::path& path) {
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   struct stat info {};
-  if (file.number < 0 || ::fstat(file.number, &info) != 0) return sim_error(SimError::world_unreadable, path.string());
+  if (file.number < 0 || ::fstat(file.number, &info) != 0)
+    return sim_error(SimError::world_unreadable, path.string());
   WorldView view;
   view.size_ = static_cast<std::size_t>(info.st_size);
   if (view.size_ < sizeof(SharedWorld)) return sim_error(SimError::world_mismatch, path.string());
@@ -139,7 +141,8 @@ std::optional<WorldState> WorldView::read() const {
   Words words;
   for (int i = 0; i < kTries; ++i) {
     const std::uint64_t before = shared_->sequence.load(std::memory_order_acquire);
-    for (std::size_t w = 0; w < kStateWords; ++w) words[w] = shared_->words[w].load(std::memory_order_acquire);
+    for (std::size_t w = 0; w < kStateWords; ++w)
+      words[w] = shared_->words[w].load(std::memory_order_acquire);
     if ((before & 1) == 0 && shared_->sequence.load(std::memory_order_relaxed) == before) {
       WorldState state;
       std::memcpy(static_cast<void*>(&state), words.data(), sizeof(state));

@@ -17,12 +17,14 @@ inline constexpr const char* kWorldVariable = "CALIBRD_SIM_WORLD";
 
 struct SharedWorld;
 
-/// The simulator's end of the shared world: a mapped file that holds the cell once and the state under a sequence
-/// lock, so that readers in other processes never block the writer and never see half a change. One thread.
+/// The simulator's end of the shared world: a mapped file that holds the cell once and the state under a
+/// sequence lock, so that readers in other processes never block the writer and never see half a change. One
+/// thread.
 class WorldFile {
  public:
   /// Replaces the file at `path`. Errors: world_unwritable.
-  static Result<WorldFile> create(const std::filesystem::path& path, const Cell& cell, const WorldState& state);
+  static Result<WorldFile> create(const std::filesystem::path& path, const Cell& cell,
+                                  const WorldState& state);
   ~WorldFile();
   WorldFile(WorldFile&&) noexcept;
   WorldFile& operator=(WorldFile&&) = delete;

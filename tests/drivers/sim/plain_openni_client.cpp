@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// A client of OpenNI2 that knows nothing of calibrd: opens the first device (or the given URI), prints its mode and
-// reads 30 frames of depth.
+// A client of OpenNI2 that knows nothing of calibrd: opens the first device (or the given URI), prints its
+// mode and reads 30 frames of depth.
 #include <OpenNI.h>
 
 #include <cstdio>
@@ -38,7 +38,8 @@ int read_frames(openni::VideoStream& depth) {
 int main(int argc, char** argv) {
   if (openni::OpenNI::initialize() != openni::STATUS_OK) return fail("cannot start OpenNI2");
   openni::Device device;
-  if (device.open(argc > 1 ? argv[1] : openni::ANY_DEVICE) != openni::STATUS_OK) return fail("cannot open a device");
+  if (device.open(argc > 1 ? argv[1] : openni::ANY_DEVICE) != openni::STATUS_OK)
+    return fail("cannot open a device");
   openni::VideoStream depth;
   if (depth.create(device, openni::SENSOR_DEPTH) != openni::STATUS_OK) return fail("no depth stream");
   if (depth.start() != openni::STATUS_OK) return fail("cannot start the depth stream");
