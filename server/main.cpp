@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 
+#include "server/calibrate_command.hpp"
 #include "server/config/print_config.hpp"
 #include "server/serve_command.hpp"
 
@@ -18,6 +19,9 @@ int dispatch(int argc, char** argv) {
   calibrd::add_serve_options(app, serve_options);
   auto* serve = app.add_subcommand("serve", "Run the daemon");
   calibrd::add_serve_options(*serve, serve_options);
+  calibrd::CalibrateOptions calibrate_options;
+  auto* calibrate = app.add_subcommand("calibrate", "Calibrate a recording and print the result as JSON");
+  calibrd::add_calibrate_options(*calibrate, calibrate_options);
   auto* reference = app.add_subcommand("config-reference", "Print docs/configuration.md");
   try {
     app.parse(argc, argv);
@@ -28,6 +32,7 @@ int dispatch(int argc, char** argv) {
     std::cout << calibrd::config_reference();
     return 0;
   }
+  if (calibrate->parsed()) return calibrd::run_calibrate(calibrate_options);
   if (serve->parsed() || serve_options.check_config || serve_options.print_config)
     return calibrd::run_serve(serve_options);
   std::cerr << app.help();

@@ -3,6 +3,7 @@
 // Writes the meshes of the demo arm: make_demo_robot FOLDER
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "config/demo_robot/links.hpp"
 #include "config/demo_robot/stl.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
-#include <numbers>
+#include <array>
 #include <span>
 #include <vector>
 

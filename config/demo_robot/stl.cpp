@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <bit>
+#include <cstdint>
 #include <fstream>
 #include <string>
 

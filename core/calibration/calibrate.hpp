@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -39,9 +40,10 @@ struct CalibrationResult {
   Verdict verdict = Verdict::rejected;
   std::optional<Pose> T_base_sensor;
   /// Covariance of (δω rad, δt m), see perturbed(): about the sensor origin, base axes.
-  Matrix6d covariance = Matrix6d::Zero();
-  double sigma_position_m = 0;    ///< sqrt of the trace of the translation block
-  double sigma_rotation_rad = 0;  ///< sqrt of the trace of the rotation block
+  /// A metre and a radian in every direction until something is known: 0 would claim certainty.
+  Matrix6d covariance = Matrix6d::Identity();
+  double sigma_position_m = std::sqrt(3.0);    ///< sqrt of the trace of the translation block
+  double sigma_rotation_rad = std::sqrt(3.0);  ///< sqrt of the trace of the rotation block
   DepthCorrection depth_correction;
   double residual_rms_m = 0;
   double coverage =

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace calibrd {
 namespace {
 
-constexpr double kSurfaceError_m = 1e-4;
+constexpr double kSurfaceErrorM = 1e-4;
 
 /// Vertices at the radius returned, on facets that span `half_angle_rad` from middle to vertex, are as far
 /// outside the true surface as the facet's middle is inside: r' - r = r - r' cos(half angle).
@@ -17,10 +18,10 @@ double balanced_radius(double radius_m, double half_angle_rad) {
   return 2 * radius_m / (1 + std::cos(half_angle_rad));
 }
 
-/// Even count of segments round a full circle for which balanced_radius() errs by less than kSurfaceError_m;
+/// Even count of segments round a full circle for which balanced_radius() errs by less than kSurfaceErrorM;
 /// r (h²/2) / 2 with h = spread · π/n.
 std::uint32_t segments(double radius_m, double spread) {
-  const double wanted = spread * std::numbers::pi * std::sqrt(radius_m / (4 * kSurfaceError_m));
+  const double wanted = spread * std::numbers::pi * std::sqrt(radius_m / (4 * kSurfaceErrorM));
   return 2 * static_cast<std::uint32_t>(std::ceil(std::clamp(wanted, 24.0, 512.0) / 2));
 }
 

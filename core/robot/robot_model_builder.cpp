@@ -7,6 +7,7 @@
 #include <urdf_model/model.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/robot/link_surface.hpp"
 #include "core/robot/nearest_name.hpp"
@@ -44,6 +45,7 @@ std::optional<JointLimits> limits_of(const urdf::Joint& joint) {
 template <class Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const auto& item : items) names.push_back(item.name);
   return names;
 }

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <unordered_map>
+#include <utility>
 
 namespace calibrd {
 namespace {

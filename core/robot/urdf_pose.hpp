@@ -1,21 +1,18 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <urdf_model/pose.h>
-
 #include "core/geometry/pose.hpp"
+
+namespace urdf {
+class Pose;
+class Vector3;
+}  // namespace urdf
 
 namespace calibrd {
 
-inline Eigen::Vector3d to_eigen(const urdf::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
+Eigen::Vector3d to_eigen(const urdf::Vector3& vector);
 
 /// urdfdom keeps the rotation as a quaternion in double; this loses nothing.
-inline Pose to_pose(const urdf::Pose& origin) {
-  const auto& [x, y, z, w] = origin.rotation;
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
-  pose.translation() = to_eigen(origin.position);
-  return pose;
-}
+Pose to_pose(const urdf::Pose& origin);
 
 }  // namespace calibrd

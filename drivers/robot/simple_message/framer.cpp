@@ -47,6 +47,13 @@ Result<Taken> Framer::take(std::span<const std::byte> bytes) {
   return taken;
 }
 
+void Framer::reset() {
+  size_ = frame_size_ = 0;
+  complete_ = false;
+  first_frame_ = true;
+  broken_.reset();
+}
+
 std::size_t Framer::append(std::span<const std::byte> bytes, std::size_t target_size) {
   const std::size_t count = std::min(bytes.size(), target_size - size_);
   std::copy_n(bytes.begin(), count, buffer_.begin() + static_cast<std::ptrdiff_t>(size_));

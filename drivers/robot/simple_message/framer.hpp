@@ -38,7 +38,7 @@ class Framer {
   bool inside_frame() const { return size_ > 0 && !complete_; }
 
   /// Starts over, for a new connection.
-  void reset() { *this = Framer(order_); }
+  void reset();
 
  private:
   std::size_t append(std::span<const std::byte> bytes, std::size_t target_size);

@@ -85,6 +85,7 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const Eigen::Vector3d&
     mesh = by_assimp(path);
   if (mesh.triangles.empty()) return sim_error(SimError::mesh_unreadable, path.string());
   for (auto& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale.cast<float>());
+  mesh.solid = is_solid(mesh);
   return mesh;
 }
 

@@ -95,8 +95,8 @@ json::object infrared_errors_json(const InfraredErrors& e) {
 }
 
 void read_camera(Fields& fields, CameraParameters& camera) {
-  fields.integer("width", camera.width, 16, 2048);
-  fields.integer("height", camera.height, 16, 2048);
+  fields.integer("width", camera.width, 16, 1024);
+  fields.integer("height", camera.height, 16, 1024);
   fields.number("fx", camera.fx, 10, 10000);
   fields.number("fy", camera.fy, 10, 10000);
   fields.number("cx", camera.cx, -2048, 4096);

@@ -79,7 +79,7 @@ void fields(Archive& archive, Fields&... all) {
 
 template <class Archive>
 void field(Archive& archive, Mesh& m) {
-  fields(archive, m.vertices, m.triangles);
+  fields(archive, m.vertices, m.triangles, m.solid);
 }
 template <class Archive>
 void field(Archive& archive, Surface& s) {

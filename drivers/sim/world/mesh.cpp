@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/sim/world/mesh.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace calibrd::sim {
@@ -24,12 +27,34 @@ Mesh revolve(const std::vector<Eigen::Vector2d>& profile, int sides) {
       mesh.triangles.push_back({a, b, b + ring_size});
       mesh.triangles.push_back({a, b + ring_size, a + ring_size});
     }
+  mesh.solid = is_solid(mesh);
   return mesh;
 }
 
 }  // namespace
 
+bool is_solid(const Mesh& mesh) {
+  std::map<std::array<float, 3>, int> points;  // files repeat a point for each of its triangles
+  const auto point = [&](std::uint32_t vertex) {
+    const Eigen::Vector3f& v = mesh.vertices[vertex];
+    return points.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(points.size())).first->second;
+  };
+  std::map<std::pair<int, int>, int> balance;  // of an edge: times up less times down
+  double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    const std::array corners{point(t[0]), point(t[1]), point(t[2])};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int from = corners[i], to = corners[(i + 1) % 3];
+      balance[std::minmax(from, to)] += from < to ? 1 : from > to ? -1 : 0;
+    }
+    volume += mesh.vertices[t[0]].cast<double>().dot(
+        mesh.vertices[t[1]].cast<double>().cross(mesh.vertices[t[2]].cast<double>()));
+  }
+  return volume > 0 && std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
 void append(Mesh& mesh, const Mesh& part) {
+  mesh.solid = part.solid && (mesh.solid || mesh.triangles.empty());
   const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
   for (const auto& t : part.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
@@ -44,6 +69,7 @@ Mesh make_box(const Eigen::Vector3d& size_m) {
                                 .cast<float>());
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  mesh.solid = is_solid(mesh);
   return mesh;
 }
 

@@ -12,6 +12,7 @@ namespace calibrd::sim {
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool solid = false;  ///< closed, all triangles counter-clockwise from outside: what faces away is never seen
 };
 
 /// How a body looks in the near infrared.
@@ -20,6 +21,9 @@ struct Surface {
   float texture = 0.0F;      ///< relative depth of the mottling on top of it, 0..1
   std::uint32_t seed = 0;    ///< makes one body's mottling differ from another's
 };
+
+/// Whether the triangles close, turned outwards: every edge runs once each way between the same points.
+bool is_solid(const Mesh& mesh);
 
 /// Appends `part`, so that one body can be built of several solids.
 void append(Mesh& mesh, const Mesh& part);

@@ -20,6 +20,7 @@ struct PoseValues {
 
   static PoseValues of(const Eigen::Isometry3d& pose);
   Eigen::Isometry3d pose() const;
+  bool operator==(const PoseValues&) const = default;
 };
 
 /// Pixel (x, y) sees along ((x-cx)/fx, (y-cy)/fy, 1), distortion (k1, k2, p1, p2, k3 as OpenCV) undone. Pixels.
@@ -50,6 +51,7 @@ struct DepthErrors {
   double max_range_m = 65.0;
 
   static DepthErrors kinect2();
+  bool operator==(const DepthErrors&) const = default;
 };
 
 /// The infrared image: `gain` * albedo * cos(incidence) / distance^2, in counts of 0..65535.
@@ -81,6 +83,7 @@ struct SensorState {
 struct ObjectState {
   PoseValues T_base_object;
   std::int32_t present = 1;
+  bool operator==(const ObjectState&) const = default;
 };
 
 /// A second robot of the same make that stands still.
@@ -88,6 +91,7 @@ struct OtherRobotState {
   PoseValues T_base_other;
   Joints joints{};
   std::int32_t present = 0;
+  bool operator==(const OtherRobotState&) const = default;
 };
 
 /// A person who walks to and fro between two places (base frame, m), feet at floor_z_m.

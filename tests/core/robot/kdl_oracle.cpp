@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <kdl/treefksolverpos_recursive.hpp>
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -19,12 +19,20 @@ struct JointText {
   KDL::Vector axis{1, 0, 0};
 };
 
+/// What stands between `before` and `after`, first occurrence from `start`.
+std::optional<std::string> between(const std::string& text, const std::string& before,
+                                   const std::string& after, std::size_t start = 0) {
+  const auto from = text.find(before, start);
+  if (from == std::string::npos) return std::nullopt;
+  const auto to = text.find(after, from + before.size());
+  return text.substr(from + before.size(), to - from - before.size());
+}
+
 /// The value of an attribute in the first tag of that name, or `otherwise`.
 std::string attribute(const std::string& text, const std::string& tag, const std::string& name,
                       const std::string& otherwise) {
-  std::smatch found;
-  const std::regex pattern("<" + tag + "\\b[^>]*\\b" + name + "=\"([^\"]*)\"");
-  return std::regex_search(text, found, pattern) ? found[1].str() : otherwise;
+  const auto inside = between(text, "<" + tag + " ", ">");
+  return inside ? between(" " + *inside, " " + name + "=\"", "\"").value_or(otherwise) : otherwise;
 }
 
 KDL::Vector vector_of(const std::string& text) {
@@ -51,9 +59,8 @@ std::vector<JointText> read_joints(const std::filesystem::path& urdf) {
   std::ifstream stream(urdf);
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   std::vector<JointText> joints;
-  const std::regex pattern("<joint[\\s\\S]*?</joint>");
-  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
-    joints.push_back(read_joint(match->str()));
+  for (auto start = text.find("<joint "); start != std::string::npos; start = text.find("<joint ", start + 1))
+    joints.push_back(read_joint("<joint " + between(text, "<joint ", "</joint>", start).value()));
   return joints;
 }
 

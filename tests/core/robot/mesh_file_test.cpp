@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <limits>
 
 #include "core/robot/robot_model.hpp"
 #include "core/robot/robot_model_error.hpp"

@@ -6,6 +6,9 @@
 #include "core/robot/robot_model_error.hpp"
 #include "tests/core/robot/scratch_folder.hpp"
 
+// urdfdom never frees links that form a ring. Read by the leak sanitizer when there is one.
+extern "C" const char* __lsan_default_suppressions() { return "leak:liburdfdom_model"; }
+
 namespace calibrd {
 namespace {
 

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/calibrate_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "api/json/calibration_result_json.hpp"
+#include "core/calibration/calibrate.hpp"
+#include "core/calibration/model_views.hpp"
+#include "core/capture/pose_json.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr int kAccepted = 0, kUnusable = 2, kNotAccepted = 3;
+
+struct Loaded {
+  RobotModel robot;
+  CameraModel camera;
+  std::vector<View> views;
+  CalibrationSettings settings;
+};
+
+Result<Loaded> load(const CalibrateOptions& options) {
+  CalibrationSettings settings;
+  settings.method = options.method == "paper" ? Method::paper : Method::full;
+  settings.depth_only = options.depth_only;
+  if (!options.guess.empty()) {
+    auto guess = read_pose(options.guess);
+    if (!guess) return guess.error();
+    settings.guess_T_base_sensor = *guess;
+  }
+  auto capture = read_capture(options.capture_dir, options.models);
+  if (!capture) return capture.error();
+  RobotModelOptions model_options{{options.capture_dir}, capture->base_link};
+  model_options.search_paths.insert(model_options.search_paths.end(), options.models.begin(), options.models.end());
+  auto robot = RobotModel::load(capture->urdf, model_options);
+  if (!robot) return robot.error();
+  const CameraModel camera = capture->camera;
+  auto views = views_in_model_order(*robot, std::move(*capture));
+  if (!views) return views.error();
+  return Loaded{std::move(*robot), camera, std::move(*views), std::move(settings)};
+}
+
+}  // namespace
+
+void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
+  command.add_option("CAPTURE_DIR", options.capture_dir, "Folder of a capture/1 recording")->required();
+  command.add_option("--models", options.models, "Folder to look robot models and meshes up in; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--guess", options.guess, "Rough pose: a JSON file with T_base_sensor, or x,y,z,qx,qy,qz,qw");
+  command.add_option("--method", options.method, "full, or paper for the published method")
+      ->check(CLI::IsMember({"full", "paper"}));
+  command.add_flag("--depth-only", options.depth_only, "Ignore the images of the recording");
+  command.add_flag("--json", options.json, "Print JSON (always the case)");
+}
+
+int run_calibrate(const CalibrateOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto input = load(options);
+  if (!input) {
+    std::cerr << "calibrd: " << input.error().message() << '\n';
+    return kUnusable;
+  }
+  const std::chrono::duration<double, std::milli> load_time = std::chrono::steady_clock::now() - begin;
+  const CalibrationResult result = calibrate(input->robot, input->camera, input->views, input->settings);
+  std::cout << api::calibration_result_json(result, load_time.count()) << '\n';
+  return result.verdict == Verdict::accepted ? kAccepted : kNotAccepted;
+}
+
+}  // namespace calibrd

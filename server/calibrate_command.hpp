@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace calibrd {
+
+struct CalibrateOptions {
+  std::filesystem::path capture_dir;
+  std::vector<std::filesystem::path> models;
+  std::string guess;  ///< a JSON file or x,y,z,qx,qy,qz,qw; empty: none
+  std::string method = "full";
+  bool depth_only = false;
+  bool json = false;  ///< accepted for clarity's sake: the output is always JSON
+};
+
+void add_calibrate_options(CLI::App& command, CalibrateOptions& options);
+
+/// Calibrates a recording without a daemon and prints one JSON object. Exit status: 0 accepted, 3 rejected or
+/// uncertain (the JSON says why), 2 unusable input (message on stderr, nothing on stdout).
+int run_calibrate(const CalibrateOptions& options);
+
+}  // namespace calibrd
