@@ -100,7 +100,8 @@ std::string CalibrationJobs::new_id() {
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm utc{};
   gmtime_r(&now, &utc);
-  std::array<char, 32> time{}, id{};
+  std::array<char, 32> time{};
+  std::array<char, 64> id{};
   std::strftime(time.data(), time.size(), "%Y%m%dT%H%M%S", &utc);
   std::snprintf(id.data(), id.size(), "%s-%06x", time.data(), static_cast<unsigned>(random_() & 0xffffffU));
   return id.data();

@@ -9,13 +9,14 @@ namespace calibrd {
 
 using api::ApiError;
 
-LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, JointMapping mapping,
-                   CalibrationStore& store, Estimator estimator, CalibrationJobs::Log log)
+LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
+                   JointMapping mapping, CalibrationStore& store, Estimator estimator,
+                   CalibrationJobs::Log log)
     : settings_(std::move(settings)),
       store_(store),
       estimator_(std::move(estimator)),
       robot_(model, std::move(mapping), settings_.gate, settings_.controller_frame),
-      clouds_(VirtualCell(model), robot_),
+      clouds_(virtual_cell, robot_),
       jobs_(
           store, estimator_.calibrate,
           [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); }, std::move(log),

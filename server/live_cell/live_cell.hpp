@@ -45,9 +45,9 @@ struct SensorSetup {
 /// add_sensor() and start() from one thread, before anything else; the rest from any.
 class LiveCell : public api::CellService {
  public:
-  /// `model` and `store` must outlive it. `log`: every calibration that has ended.
-  LiveCell(LiveCellSettings settings, const RobotModel& model, JointMapping mapping, CalibrationStore& store,
-           Estimator estimator, CalibrationJobs::Log log);
+  /// `model` and `store` must outlive it; `virtual_cell` is copied. `log`: every calibration that has ended.
+  LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
+           JointMapping mapping, CalibrationStore& store, Estimator estimator, CalibrationJobs::Log log);
   ~LiveCell() override;
 
   LiveRobot& robot_link() { return robot_; }

@@ -171,8 +171,8 @@ api::PoseReport LiveSensor::pose() const {
 api::SensorReport LiveSensor::report() const {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
-  const auto health =
-      source_ ? source_->health() : SensorHealth{SensorHealth::State::lost, "not started", {}};
+  SensorHealth health;
+  if (source_) health = source_->health();
   api::SensorReport report;
   report.id = settings_.id;
   report.health = name_of(health.state);

@@ -33,7 +33,7 @@ fs::path place_of(const std::string& reference) {
   return inside && reference.find("file://") != 0 ? normal : fs::path();
 }
 
-Status copy(const fs::path& from, const fs::path& to) {
+Status place_copy(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   fs::create_directories(to.parent_path(), failure);
   if (!failure) fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
@@ -51,9 +51,9 @@ Status pack_robot(const fs::path& urdf, std::span<const fs::path> search_paths, 
     if (place.empty()) continue;
     const auto mesh = find_mesh(reference, urdf, search_paths);
     if (!mesh) return mesh.error();
-    if (auto copied = copy(*mesh, folder / place); !copied) return copied;
+    if (auto copied = place_copy(*mesh, folder / place); !copied) return copied;
   }
-  return copy(urdf, folder / kName);
+  return place_copy(urdf, folder / kName);
 }
 
 }  // namespace calibrd
