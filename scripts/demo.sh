@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-readonly kBin=build/release/bin kSensor=kinect2 kMaxMm=3 kMaxMrad=3
+readonly kBin=build/release/bin kRobots=build/release/share/calibrd/robots kSensor=kinect2 kMaxMm=3 kMaxMrad=3
 work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-demo.XXXXXX")
 pids=()
 
@@ -48,8 +48,8 @@ build() {
 }
 
 start_simulator() {
-  "$kBin/calibrd-sim" run --world config/demo_cell/world.json --models build/release/share/calibrd \
-    --world-file "$work/world" --controller-port 0 --control-port 0 --ready-file "$work/ready" \
+  "$kBin/calibrd-sim" run --world config/demo_cell/world.json --urdf "$kRobots/demo_arm7/urdf/demo_arm7.urdf" \
+    --models "$kRobots" --world-file "$work/world" --controller-port 0 --control-port 0 --ready-file "$work/ready" \
     >/dev/null 2>"$work/simulator.log" &
   pids+=($!)
   wait_for 30 "the simulator" test -f "$work/ready"

@@ -9,14 +9,12 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from cell import BIN, BUILD, SOURCE, CellTest
-
-URDF = BUILD / "share/calibrd/robots/demo_arm7/urdf/demo_arm7.urdf"
+from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest
 
 
 class BadInput(CellTest):
     def run_daemon(self, *settings: str, config: Path = SOURCE / "config/demo.toml"):
-        own = (f"storage.path={self.folder / 'calibrd.db'}", "server.port=0", "robot.port=9")
+        own = (f"storage.path={self.folder / 'calibrd.db'}", "server.port=0", "robot.port=9", *OF_THIS_BUILD)
         options = [word for setting in (*own, *settings) for word in ("--set", setting)]
         return subprocess.run([BIN / "calibrd", "serve", "--config", config, *options], cwd=self.folder, timeout=20,
                               capture_output=True, text=True, check=False)

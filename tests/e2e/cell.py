@@ -17,7 +17,11 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("CALIBRD_BUILD", SOURCE / "build/release"))
 BIN = BUILD / "bin"
+ROBOTS = BUILD / "share/calibrd/robots"
+URDF = ROBOTS / "demo_arm7/urdf/demo_arm7.urdf"
 SENSOR = "kinect2"
+OF_THIS_BUILD = (f"robot.urdf={URDF}", f"robot.search_paths=['{ROBOTS}']",
+                 f"sensors.{SENSOR}.driver_directory={BUILD / 'lib/calibrd-sim-openni'}")
 
 
 def free_port() -> int:
@@ -89,7 +93,7 @@ class Simulator(Program):
     def __init__(self, folder: Path, controller_port: int = 0, world: Path = SOURCE / "config/demo_cell/world.json"):
         self.world_file, ready = folder / "world", folder / "simulator.ready"
         ready.unlink(missing_ok=True)
-        super().__init__("calibrd-sim", folder, "run", "--world", world, "--models", BUILD / "share/calibrd",
+        super().__init__("calibrd-sim", folder, "run", "--world", world, "--urdf", URDF, "--models", ROBOTS,
                          "--world-file", self.world_file, "--controller-port", controller_port, "--control-port", 0,
                          "--ready-file", ready)
         wait_until("the simulator is ready", lambda: ready.exists() or not self.alive())
@@ -124,7 +128,8 @@ class Daemon(Program):
     def __init__(self, folder: Path, controller_port: int, world_file: Path, *settings: str,
                  config: Path = SOURCE / "config/demo.toml"):
         self.port = free_port()
-        own = (f"server.port={self.port}", f"robot.port={controller_port}", f"storage.path={folder / 'calibrd.db'}")
+        own = (f"server.port={self.port}", f"robot.port={controller_port}", f"storage.path={folder / 'calibrd.db'}",
+               *OF_THIS_BUILD)
         options = [word for setting in (*own, *settings) for word in ("--set", setting)]
         super().__init__("calibrd", folder, "serve", "--config", config, *options,
                          env={"CALIBRD_SIM_WORLD": str(world_file)})

@@ -11,7 +11,7 @@ import tarfile
 import unittest
 import zlib
 
-from cell import BIN, BUILD, SENSOR, CellTest, call
+from cell import BIN, ROBOTS, SENSOR, CellTest, call
 from poses import axis_turn, difference, multiply, shift
 
 POSTURES = 3
@@ -45,7 +45,7 @@ class Recording(CellTest):
         simulator.stop()
 
     def calibrate(self, *options):
-        return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--models", BUILD / "share/calibrd",
+        return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--models", ROBOTS,
                                "--guess", self.guess, *options], capture_output=True, text=True, timeout=120, check=False)
 
     def expect_refused(self, *words: str):

@@ -9,10 +9,9 @@ import threading
 import time
 import unittest
 
-from cell import BUILD, SENSOR, CellTest, wait_until
+from cell import SENSOR, URDF, CellTest, wait_until
 from poses import Robot, Surface, apply, inverse, read_stl
 
-URDF = BUILD / "share/calibrd/robots/demo_arm7/urdf/demo_arm7.urdf"
 SPEED_RAD_S = 0.5
 MAX_M = 1e-4
 CLOUDS, POINTS = 5, 300
