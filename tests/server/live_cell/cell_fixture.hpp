@@ -29,7 +29,7 @@ class FedSource : public DepthSource {
   std::optional<DepthFrame> next(std::chrono::milliseconds timeout) override {
     std::unique_lock lock(feed_->mutex);
     if (!feed_->changed.wait_for(lock, timeout, [&] { return !feed_->frames.empty(); })) return std::nullopt;
-    std::optional<DepthFrame> frame(std::move(feed_->frames.front()));
+    std::optional<DepthFrame> frame(feed_->frames.front());
     feed_->frames.pop_front();
     return frame;
   }
