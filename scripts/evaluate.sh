@@ -1,4 +1,7 @@
 #!/usr/bin/env bash
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+#
 # Prints the figures of the registration: errors on simulated captures with truth, and on a real recording how far
 # calibrations from 20 random guesses lie apart and how they score against the evaluation masks.
 #   scripts/evaluate.sh [DATA_DIR]     (default: ../shared/data; the judge is looked for in ../tools/judge beside it)

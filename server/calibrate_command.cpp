@@ -36,7 +36,8 @@ Result<Loaded> load(const CalibrateOptions& options) {
   auto capture = read_capture(options.capture_dir, options.models);
   if (!capture) return capture.error();
   RobotModelOptions model_options{{options.capture_dir}, capture->base_link};
-  model_options.search_paths.insert(model_options.search_paths.end(), options.models.begin(), options.models.end());
+  model_options.search_paths.insert(model_options.search_paths.end(), options.models.begin(),
+                                    options.models.end());
   auto robot = RobotModel::load(capture->urdf, model_options);
   if (!robot) return robot.error();
   const CameraModel camera = capture->camera;
@@ -49,9 +50,11 @@ Result<Loaded> load(const CalibrateOptions& options) {
 
 void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
   command.add_option("CAPTURE_DIR", options.capture_dir, "Folder of a capture/1 recording")->required();
-  command.add_option("--models", options.models, "Folder to look robot models and meshes up in; may be repeated")
+  command
+      .add_option("--models", options.models, "Folder to look robot models and meshes up in; may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--guess", options.guess, "Rough pose: a JSON file with T_base_sensor, or x,y,z,qx,qy,qz,qw");
+  command.add_option("--guess", options.guess,
+                     "Rough pose: a JSON file with T_base_sensor, or x,y,z,qx,qy,qz,qw");
   command.add_option("--method", options.method, "full, or paper for the published method")
       ->check(CLI::IsMember({"full", "paper"}));
   command.add_flag("--depth-only", options.depth_only, "Ignore the images of the recording");

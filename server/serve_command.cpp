@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/serve_command.hpp"
 
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
+#include <cstring>
 #include <filesystem>
+#include <future>
 #include <iostream>
 
 #include "server/config/load_config.hpp"
 #include "server/config/print_config.hpp"
+#include "server/daemon/daemon.hpp"
+#include "server/daemon/end_signal.hpp"
 #include "server/logging/logging.hpp"
 
 namespace calibrd {
@@ -15,6 +22,7 @@ namespace {
 
 constexpr const char* kDefaultFile = "/etc/calibrd/calibrd.toml";
 constexpr int kUnusable = 2;
+constexpr auto kPatience = std::chrono::milliseconds(900);
 
 ConfigSources sources_of(const ServeOptions& options) {
   ConfigSources sources{std::nullopt, process_environment(), options.overrides};
@@ -23,6 +31,38 @@ ConfigSources sources_of(const ServeOptions& options) {
   else if (std::filesystem::exists(kDefaultFile))
     sources.file = kDefaultFile;
   return sources;
+}
+
+int refuse(const Error& error) {
+  std::cerr << "calibrd: " << error.message() << '\n';
+  return kUnusable;
+}
+
+int only_check(const Config& config) {
+  if (const auto checked = check_config(config); !checked) return refuse(checked.error());
+  std::cout << "the configuration is good\n";
+  return 0;
+}
+
+/// Starts in a thread of its own, so that the signal is heard while a large robot model is being read.
+int serve(const Config& config) {
+  const EndSignal end;
+  auto starting = std::async(std::launch::async, [&config, main = pthread_self()] {
+    auto daemon = Daemon::start(config, CALIBRD_VERSION);
+    if (daemon)
+      spdlog::info("calibrd {} listens on {}:{}", CALIBRD_VERSION, config.server.address,
+                   (*daemon)->http_port());
+    else
+      pthread_kill(main, SIGTERM);
+    return daemon;
+  });
+  const int number = end.wait();
+  EndSignal::end_within(kPatience);
+  const auto daemon = starting.get();
+  if (!daemon) return refuse(daemon.error());
+  spdlog::info("ending on {}", strsignal(number));
+  (*daemon)->stop();
+  return 0;
 }
 
 }  // namespace
@@ -38,20 +78,13 @@ void add_serve_options(CLI::App& command, ServeOptions& options) {
 
 int run_serve(const ServeOptions& options) {
   const auto loaded = load_config(sources_of(options));
-  if (!loaded) {
-    std::cerr << "calibrd: " << loaded.error().message() << '\n';
-    return kUnusable;
-  }
+  if (!loaded) return refuse(loaded.error());
   if (options.print_config) {
     std::cout << config_as_toml(*loaded);
     return 0;
   }
-  if (options.check_config) {
-    std::cout << "the configuration is good\n";
-    return 0;
-  }
   start_logging(loaded->config.log);
-  return 0;
+  return options.check_config ? only_check(loaded->config) : serve(loaded->config);
 }
 
 }  // namespace calibrd

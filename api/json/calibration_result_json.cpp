@@ -36,8 +36,8 @@ json::object depth_correction_json(const DepthCorrection& correction) {
   return {{"scale", correction.scale},
           {"offset_m", correction.offset_m},
           {"periodic_sin_m", correction.periodic_sin_m},
-          {"periodic_period_m", correction.periodic_period_m},
-          {"periodic_cos_m", correction.periodic_cos_m}};
+          {"periodic_cos_m", correction.periodic_cos_m},
+          {"periodic_period_m", correction.periodic_period_m}};
 }
 
 json::array reasons_json(const std::vector<Reason>& reasons) {
@@ -51,8 +51,8 @@ DepthCorrection depth_correction_of(const json::object& object) {
   correction.scale = number_or(object, "scale", 1);
   correction.offset_m = number_or(object, "offset_m", 0);
   correction.periodic_sin_m = number_or(object, "periodic_sin_m", 0);
-  correction.periodic_period_m = number_or(object, "periodic_period_m", 0);
   correction.periodic_cos_m = number_or(object, "periodic_cos_m", 0);
+  correction.periodic_period_m = number_or(object, "periodic_period_m", 0);
   return correction;
 }
 

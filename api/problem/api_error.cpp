@@ -43,7 +43,6 @@ constexpr std::array kTable{
     Row{ApiError::capture_failed, {500, "capture_failed", "The capture could not be written.", "Check disk space and permissions of the temporary folder (TMPDIR)."}},
     Row{ApiError::header_too_large, {431, "header_too_large", "The request header is too large.", "Send at most 8 KiB of header."}},
     Row{ApiError::body_too_large, {413, "body_too_large", "The request body is too large.", "Send at most 64 KiB."}},
-    Row{ApiError::too_slow, {408, "too_slow", "The request did not arrive in time.", "Send it again, faster."}},
     Row{ApiError::too_many_connections, {503, "too_many_connections", "Too many connections are open.", "Reuse connections, or raise server.max_connections."}},
     Row{ApiError::shutting_down, {503, "shutting_down", "The daemon is ending.", "Try again when it has been started again."}},
     Row{ApiError::internal, {500, "internal", "Something unexpected went wrong.", "Report it with the log of the daemon around this time."}},

@@ -39,7 +39,6 @@ enum class ApiError {
   capture_failed,
   header_too_large,
   body_too_large,
-  too_slow,
   too_many_connections,
   shutting_down,
   internal,

@@ -75,6 +75,7 @@ json::value controller_json(const std::optional<ControllerReport>& controller) {
                       {"motion_possible", or_null(controller->motion_possible)},
                       {"mode", controller->mode},
                       {"error_code", controller->error_code},
+                      {"fresh", controller->fresh},
                       {"age_s", controller->age.count()}};
 }
 
@@ -91,6 +92,8 @@ json::object sensor_json(const SensorReport& sensor) {
   return {{"id", sensor.id},
           {"health", sensor.health},
           {"reason", text_or_null(sensor.reason)},
+          {"device", text_or_null(sensor.device)},
+          {"notice", text_or_null(sensor.notice)},
           {"frames", sensor.frames},
           {"frames_lost", sensor.frames_lost},
           {"restarts", sensor.restarts},

@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> provenance(const Cloud& cloud) 
   if (!cloud.joint_positions_rad.empty()) {
     std::string joints;
     for (const double position : cloud.joint_positions_rad)
-      joints += (joints.empty() ? "" : " ") + number(position);
+      joints.append(joints.empty() ? "" : " ").append(number(position));
     lines.emplace_back("Joint-Positions", joints);
   }
   if (cloud.frame_stamp_ns) lines.emplace_back("Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
@@ -75,8 +75,9 @@ Response cloud_response(const Cloud& cloud) {
   Response response{200, {{"Content-Type", "application/x-ply"}, {"Cache-Control", "no-store"}}, {}};
   std::vector<std::string> comments;
   for (const auto& [name, value] : provenance(cloud)) {
-    response.headers.emplace_back("Calibrd-" + name, value);
-    comments.push_back("Calibrd-" + name + " " + value);
+    auto labelled = std::string("Calibrd-").append(name);
+    comments.push_back(labelled + " " + value);
+    response.headers.emplace_back(std::move(labelled), value);
   }
   response.body = write_ply(cloud.points, cloud.residual_m, comments);
   return response;

@@ -62,6 +62,8 @@ struct SensorReport {
   std::string id;
   std::string health;  ///< "starting", "streaming", "lost"
   std::string reason;  ///< why it is not streaming, and what to do
+  std::string device;  ///< vendor, name and URI of what is open
+  std::string notice;  ///< what is not as configured although it streams
   std::uint64_t frames = 0, frames_lost = 0, restarts = 0;
   double frame_rate_hz = 0;
   std::optional<Seconds> frame_age;
@@ -82,6 +84,7 @@ struct ControllerReport {
   std::optional<bool> drives_powered, e_stopped, in_error, in_motion, motion_possible;
   std::string mode;  ///< "unknown", "manual", "automatic"
   int error_code = 0;
+  bool fresh = false;  ///< false: it is the last word of a controller that has fallen silent
   Seconds age{0};
 };
 

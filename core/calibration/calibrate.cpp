@@ -46,9 +46,10 @@ CalibrationResult rejected(Reason reason, std::size_t views) {
   return result;
 }
 
-/// The published method knows no uncertainty and no verdict of its own: its pose is never more than uncertain.
-CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
-                                     const Pose& guess) {
+/// The published method knows no uncertainty and no verdict of its own: its pose is never more than
+/// uncertain.
+CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera,
+                                     std::span<const View> views, const Pose& guess) {
   const auto fit = fit_by_paper(robot, camera, views.front(), guess, {});
   if (!fit) return rejected({"robot_not_found", "no measured points near the robot; is the guess right?"}, 1);
   CalibrationResult result;
@@ -56,14 +57,17 @@ CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel&
   result.T_base_sensor = fit->T_base_sensor;
   result.residual_rms_m = fit->rms_m;
   result.views = 1;
-  result.reasons.push_back({"paper_method", "the paper's method gives no uncertainty; its pose is for comparison only"});
-  if (!fit->converged) result.reasons.push_back({"not_converged", "ICP ended before its correspondences settled"});
-  if (views.size() > 1) result.reasons.push_back({"first_view_only", "the paper's method uses one posture: the first view"});
+  result.reasons.push_back(
+      {"paper_method", "the paper's method gives no uncertainty; its pose is for comparison only"});
+  if (!fit->converged)
+    result.reasons.push_back({"not_converged", "ICP ended before its correspondences settled"});
+  if (views.size() > 1)
+    result.reasons.push_back({"first_view_only", "the paper's method uses one posture: the first view"});
   return result;
 }
 
-CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
-                                    const CalibrationSettings& settings) {
+CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera,
+                                    std::span<const View> views, const CalibrationSettings& settings) {
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
   const VirtualCell cell(robot);
   PrepareSettings prepare;

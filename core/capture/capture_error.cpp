@@ -14,6 +14,10 @@ class CaptureErrorCategory final : public std::error_category {
         return "there is no such folder; give the folder that holds capture.json";
       case CaptureError::unreadable:
         return "the file cannot be read; check that it exists and its permissions";
+      case CaptureError::file_too_large:
+        return "the file is far larger than any recording needs; check that it is the right one";
+      case CaptureError::path_outside:
+        return "the images of a recording lie in its own folder; give a path relative to it, without \"..\"";
       case CaptureError::bad_json:
         return "this is not valid JSON; mend it at the place named";
       case CaptureError::wrong_format:
@@ -38,7 +42,9 @@ class CaptureErrorCategory final : public std::error_category {
         return "a depth image must be a 16-bit single-channel PNG (an 8-bit one has lost the depth); export "
                "it again";
       case CaptureError::wrong_joint_count:
-        return "joint_positions_rad must hold one finite number for each of robot.joint_names";
+        return "joint_positions_rad must hold one finite number for each of robot.joint_names, in that "
+               "order; mend or "
+               "remove the frame";
       case CaptureError::unknown_joint:
         return "robot.joint_names names a joint that the robot model does not have; use the URDF's joint "
                "names";

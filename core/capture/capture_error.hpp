@@ -12,6 +12,8 @@ namespace calibrd {
 enum class CaptureError {
   no_such_folder = 1,
   unreadable,
+  file_too_large,
+  path_outside,
   bad_json,
   wrong_format,
   missing_key,

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <boost/json.hpp>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
 #include "core/capture/capture.hpp"
 #include "core/capture/capture_error.hpp"
+#include "core/capture/capture_rules.hpp"
 #include "core/capture/png.hpp"
 
 namespace calibrd {
@@ -20,6 +22,30 @@ std::string numbered(const char* stem, std::size_t index) {
   return name;
 }
 
+Status check_view(const View& view, const Capture& capture, const std::string& name) {
+  const CameraModel& camera = capture.camera;
+  if (auto ok = check_image_size(view.depth.width, view.depth.height, camera, name + ".depth"); !ok)
+    return ok;
+  if (view.image)
+    if (auto ok = check_image_size(view.image->width, view.image->height, camera, name + ".image"); !ok)
+      return ok;
+  // capture.json holds one scale for all frames.
+  if (view.depth.scale_m != capture.views.front().depth.scale_m)
+    return fail(CaptureError::bad_value, name + ".depth (its scale is not that of the first frame)");
+  if (!std::isfinite(view.stamp_s)) return fail(CaptureError::bad_value, name + ".stamp_s (not finite)");
+  return check_joints(view.joint_positions_rad, capture.joint_names.size(), name + ".joint_positions_rad");
+}
+
+/// What a reader would refuse is not written.
+Status check(const Capture& capture) {
+  if (auto ok = check_camera(capture.camera); !ok) return ok;
+  if (auto ok = check_frame_count(capture.views.size(), capture.camera); !ok) return ok;
+  if (auto ok = check_depth_scale(capture.views.front().depth.scale_m); !ok) return ok;
+  for (std::size_t i = 0; i < capture.views.size(); ++i)
+    if (auto ok = check_view(capture.views[i], capture, "frames[" + std::to_string(i) + "]"); !ok) return ok;
+  return Done{};
+}
+
 json::object describe_sensor(const Capture& capture) {
   const CameraModel& c = capture.camera;
   return {{"id", capture.sensor_id},
@@ -30,7 +56,7 @@ json::object describe_sensor(const Capture& capture) {
           {"cx", c.cx},
           {"cy", c.cy},
           {"distortion", json::value_from(c.distortion)},
-          {"depth_scale_m", capture.views.empty() ? 0.001 : capture.views.front().depth.scale_m}};
+          {"depth_scale_m", capture.views.front().depth.scale_m}};
 }
 
 json::object describe_robot(const Capture& capture, const std::string& urdf_reference) {
@@ -73,27 +99,52 @@ Status write_all(const fs::path& folder, const Capture& capture, const std::stri
   return Done{};
 }
 
+/// The folder's path without `.`, `..` and a slash at its end.
+fs::path cleaned(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path normal = fs::absolute(folder, ignored).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
+/// A new folder beside `target`: what stands there already belongs to somebody else.
+Result<fs::path> make_partial_folder(const fs::path& target) {
+  constexpr int kTries = 1000;
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  for (int i = 0; i < kTries && !error; ++i) {
+    fs::path partial = target;
+    partial += ".partial" + std::to_string(i);
+    if (fs::create_directory(partial, error)) return partial;
+  }
+  return fail(CaptureError::unwritable, target.string() + " (" + error.message() + ")");
+}
+
+Status check_target(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (!fs::exists(status)) return Done{};
+  if (!fs::is_directory(status)) return fail(CaptureError::unwritable, target.string() + " (not a folder)");
+  if (!fs::is_empty(target, error)) return fail(CaptureError::folder_not_empty, target.string());
+  return Done{};
+}
+
 }  // namespace
 
 Status write_capture(const fs::path& capture_dir, const Capture& capture, const std::string& urdf_reference) {
-  std::error_code error;
-  if (fs::exists(capture_dir, error) && !fs::is_empty(capture_dir, error))
-    return fail(CaptureError::folder_not_empty, capture_dir.string());
+  if (auto ok = check(capture); !ok) return ok;
+  const fs::path target = cleaned(capture_dir);
+  if (auto ok = check_target(target); !ok) return ok;
   // Written beside and renamed, so that a half-written recording never carries the name asked for.
-  fs::path partial = capture_dir.lexically_normal();
-  if (!partial.has_filename()) partial = partial.parent_path();
-  const fs::path target = partial;
-  partial += ".partial";
-  fs::remove_all(partial, error);
-  if (!fs::create_directories(partial, error)) return fail(CaptureError::unwritable, partial.string());
-  if (auto ok = write_all(partial, capture, urdf_reference); !ok) {
-    fs::remove_all(partial, error);
-    return ok;
+  const auto partial = make_partial_folder(target);
+  if (!partial) return partial.error();
+  Status done = write_all(*partial, capture, urdf_reference);
+  std::error_code error;
+  if (done) {
+    fs::rename(*partial, target, error);  // takes the place of an empty folder, never of a full one
+    if (error) done = fail(CaptureError::unwritable, target.string() + " (" + error.message() + ")");
   }
-  fs::remove(target, error);  // an empty folder may stand there
-  fs::rename(partial, target, error);
-  if (error) return fail(CaptureError::unwritable, target.string() + " (" + error.message() + ")");
-  return Done{};
+  if (!done) fs::remove_all(*partial, error);
+  return done;
 }
 
 }  // namespace calibrd

@@ -4,74 +4,82 @@
 
 #include <spng.h>
 
-#include <bit>
 #include <cstring>
 #include <fstream>
 #include <memory>
 
 #include "core/capture/capture_error.hpp"
+#include "core/capture/capture_rules.hpp"
+#include "core/capture/file_bytes.hpp"
 
 namespace calibrd {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 8192;
+constexpr std::uintmax_t kMaxFileBytes = 1U << 30U;
+constexpr std::size_t kMaxChunkBytes = 64U << 20U;  // of side data, unpacked
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
-
-Result<std::vector<char>> read_bytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.good() && bytes.empty()) return fail(CaptureError::unreadable, path.string());
-  return bytes;
-}
 
 std::uint16_t luminance(const std::uint16_t* rgb) {
   return static_cast<std::uint16_t>((299U * rgb[0] + 587U * rgb[1] + 114U * rgb[2] + 500U) / 1000U);
 }
 
-/// Decodes into 16-bit samples. Grey files are asked for as they are, so that 16-bit depth stays exact.
-Result<PngImage> decode(spng_ctx* context, const std::string& name) {
-  spng_ihdr header{};
-  if (int error = spng_get_ihdr(context, &header))
-    return fail(CaptureError::bad_png, name + " (" + spng_strerror(error) + ")");
-  const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE;
-  const bool wide = header.bit_depth == 16;
-  // spng expands palettes and alpha to RGBA; grey is decoded at its own depth (PNG order with host
-  // endianness).
-  const int format = !grey ? SPNG_FMT_RGBA16 : wide ? SPNG_FMT_RAW : SPNG_FMT_G8;
-  std::size_t size = 0;
-  if (spng_decoded_image_size(context, format, &size) != 0) return fail(CaptureError::bad_png, name);
-  std::vector<unsigned char> raw(size);
-  if (int error = spng_decode_image(context, raw.data(), size, format, 0))
-    return fail(CaptureError::bad_png, name + " (" + spng_strerror(error) + ")");
+Error bad_png(const std::string& name, int error) {
+  return fail(CaptureError::bad_png, name + " (" + spng_strerror(error) + ")");
+}
 
-  PngImage image{
-      static_cast<int>(header.width), static_cast<int>(header.height), wide ? 16 : 8, grey ? 1 : 3, {}};
-  const std::size_t count = std::size_t{header.width} * header.height;
-  image.pixels.resize(count);
+/// One 16-bit value per pixel from what spng unpacked in `format`.
+std::vector<std::uint16_t> to_grey16(const std::vector<unsigned char>& raw, int format, bool wide,
+                                     std::size_t count) {
+  std::vector<std::uint16_t> pixels(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (grey && !wide) {
-      image.pixels[i] = raw[i];
-    } else if (grey) {  // SPNG_FMT_RAW is big endian, as in the file
-      image.pixels[i] = static_cast<std::uint16_t>(raw[2 * i] << 8 | raw[2 * i + 1]);
+    if (format == SPNG_FMT_G8) {
+      pixels[i] = raw[i];
+    } else if (format == SPNG_FMT_RAW) {  // big endian, as in the file
+      pixels[i] = static_cast<std::uint16_t>(raw[2 * i] << 8 | raw[2 * i + 1]);
     } else {
       std::uint16_t rgba[4];
       std::memcpy(rgba, raw.data() + 8 * i, sizeof rgba);
       const std::uint16_t value = luminance(rgba);
-      image.pixels[i] = wide ? value : static_cast<std::uint16_t>(value / 257);
+      pixels[i] = wide ? value : static_cast<std::uint16_t>(value / 257);  // 8 bits were spread over 16
     }
   }
+  return pixels;
+}
+
+Result<PngImage> decode(spng_ctx* context, const std::string& name, const CameraModel* camera) {
+  spng_ihdr header{};
+  if (int error = spng_get_ihdr(context, &header)) return bad_png(name, error);
+  PngImage image{static_cast<int>(header.width),
+                 static_cast<int>(header.height),
+                 header.bit_depth == 16 ? 16 : 8,
+                 header.color_type == SPNG_COLOR_TYPE_GRAYSCALE ? 1 : 3,
+                 {}};
+  if (camera != nullptr)
+    if (auto ok = check_image_size(image.width, image.height, *camera, name); !ok) return ok.error();
+  // Grey is asked for at its own depth, so that 16-bit depth stays exact; spng expands palettes and alpha to
+  // RGBA.
+  const bool wide = image.bit_depth == 16;
+  const int format = image.channels == 3 ? SPNG_FMT_RGBA16 : wide ? SPNG_FMT_RAW : SPNG_FMT_G8;
+  std::size_t size = 0;
+  if (int error = spng_decoded_image_size(context, format, &size)) return bad_png(name, error);
+  std::vector<unsigned char> raw(size);
+  if (int error = spng_decode_image(context, raw.data(), size, format, 0)) return bad_png(name, error);
+  if (int error = spng_decode_chunks(context)) return bad_png(name, error);  // whole to its end?
+  image.pixels = to_grey16(raw, format, wide, std::size_t{header.width} * header.height);
   return image;
 }
 
 }  // namespace
 
-Result<PngImage> read_png(const std::filesystem::path& path) {
-  auto bytes = read_bytes(path);
+Result<PngImage> read_png(const std::filesystem::path& path, const CameraModel* camera) {
+  const auto bytes = read_bytes(path, kMaxFileBytes);
   if (!bytes) return bytes.error();
   const Context context(spng_ctx_new(0), &spng_ctx_free);
   spng_set_image_limits(context.get(), kMaxSide, kMaxSide);
+  spng_set_chunk_limits(context.get(), kMaxChunkBytes, kMaxChunkBytes);
   spng_set_png_buffer(context.get(), bytes->data(), bytes->size());
-  return decode(context.get(), path.string());
+  return decode(context.get(), path.string(), camera);
 }
 
 Status write_png16(const std::filesystem::path& path, int width, int height,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/geometry/camera_model.hpp"
 
 namespace calibrd {
 
@@ -20,10 +21,13 @@ struct PngImage {
   std::vector<std::uint16_t> pixels;
 };
 
-/// Errors: CaptureError::unreadable, bad_png. Images beyond 64 megapixels are refused.
-Result<PngImage> read_png(const std::filesystem::path& path);
+/// Given a camera, the image must be of its size; that is checked before anything is unpacked.
+/// Errors: CaptureError::unreadable, file_too_large, bad_png (also beyond 8192 pixels a side),
+/// wrong_image_size.
+Result<PngImage> read_png(const std::filesystem::path& path, const CameraModel* camera = nullptr);
 
-/// Single-channel 16-bit PNG. pixels: width*height values. Errors: CaptureError::unwritable.
+/// Single-channel 16-bit PNG. pixels: width*height values. Errors: CaptureError::unwritable (also when the
+/// number of pixels is another).
 Status write_png16(const std::filesystem::path& path, int width, int height,
                    std::span<const std::uint16_t> pixels);
 

@@ -3,98 +3,125 @@
 #include "core/capture/pose_json.hpp"
 
 #include <Eigen/SVD>
-#include <boost/json.hpp>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 #include <vector>
 
-#include "core/capture/capture_error.hpp"
+#include "core/capture/file_bytes.hpp"
+#include "core/capture/json_document.hpp"
 
 namespace calibrd {
 namespace {
 
 namespace json = boost::json;
 constexpr double kRotationTolerance = 1e-3;
+constexpr double kLastRowTolerance = 1e-6;  // poses of other tools went through 32-bit floats
+constexpr double kMaxDistance_m = 100;      // beyond any cell: then they are millimetres
+constexpr std::uintmax_t kMaxFileBytes = 16U << 20U;
 
-/// All numbers of a (nested) array, row-major; false when something else stands in it.
-bool collect_numbers(const json::value& value, std::vector<double>& numbers) {
-  if (value.is_number()) {
+Error bad_pose(const std::string& name, const std::string& why) {
+  return fail(CaptureError::bad_pose_file, name + " (" + why + ")");
+}
+
+/// Appends the list's numbers; false when something else stands in it.
+bool append_numbers(const json::value& list, std::vector<double>& numbers) {
+  if (!list.is_array()) return false;
+  for (const json::value& value : list.get_array()) {
+    if (!value.is_number() || !std::isfinite(value.to_number<double>())) return false;
     numbers.push_back(value.to_number<double>());
-    return std::isfinite(numbers.back());
-  }
-  if (!value.is_array()) return false;
-  for (const json::value& item : value.get_array()) {
-    if (!collect_numbers(item, numbers)) return false;
   }
   return true;
 }
 
+/// 12 or 16 row-major numbers of a flat list or of 3 or 4 rows of 4; nothing when it is another shape.
+std::optional<std::vector<double>> row_major(const json::value& matrix) {
+  std::vector<double> numbers;
+  if (append_numbers(matrix, numbers) && (numbers.size() == 12 || numbers.size() == 16)) return numbers;
+  numbers.clear();
+  if (!matrix.is_array() || matrix.get_array().size() < 3 || matrix.get_array().size() > 4)
+    return std::nullopt;
+  for (const json::value& row : matrix.get_array())
+    if (!append_numbers(row, numbers) || numbers.size() % 4 != 0 || row.get_array().size() != 4)
+      return std::nullopt;
+  return numbers;
+}
+
+Result<Pose> checked(const Pose& pose, const std::string& name) {
+  if (pose.translation().cwiseAbs().maxCoeff() <= kMaxDistance_m) return pose;
+  return bad_pose(name, "more than 100 m away; translations are in metres");
+}
+
 Result<Pose> pose_from_numbers(const std::vector<double>& m, const std::string& name) {
-  const bool full = m.size() == 16;
-  if (m.size() != 12 && !full)
-    return fail(CaptureError::bad_pose_file,
-                name + ": T_base_sensor holds " + std::to_string(m.size()) + " numbers");
-  if (full && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1))
-    return fail(CaptureError::bad_pose_file, name + ": the last row of T_base_sensor is not 0 0 0 1");
-  Eigen::Matrix3d R;
-  Eigen::Vector3d t;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) R(row, column) = m[static_cast<std::size_t>(4 * row + column)];
-    t[row] = m[static_cast<std::size_t>(4 * row + 3)];
-  }
-  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > kRotationTolerance || R.determinant() < 0)
-    return fail(CaptureError::bad_pose_file, name + ": the rotation part of T_base_sensor is not a rotation");
+  using Row = Eigen::Map<const Eigen::RowVector4d>;
+  if (m.size() == 16 && !(Row(&m[12]) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(kLastRowTolerance))
+    return bad_pose(name, "the last row of T_base_sensor is not 0 0 0 1");
+  Eigen::Matrix<double, 3, 4> top;
+  top << Row(&m[0]), Row(&m[4]), Row(&m[8]);
+  const Eigen::Matrix3d R = top.leftCols<3>();
+  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= kRotationTolerance) ||
+      R.determinant() < 0)
+    return bad_pose(name, "the rotation part of T_base_sensor is not a rotation");
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose pose = Pose::Identity();
   pose.linear() = svd.matrixU() * svd.matrixV().transpose();
-  pose.translation() = t;
-  return pose;
+  pose.translation() = top.col(3);
+  return checked(pose, name);
+}
+
+/// The numbers between commas; nothing when a field is not one finite number.
+std::optional<std::vector<double>> comma_separated(std::string_view text) {
+  constexpr std::string_view kBlank = " \t";
+  std::vector<double> numbers;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    std::string_view field = text.substr(start, end - start);
+    field.remove_prefix(std::min(field.find_first_not_of(kBlank), field.size()));
+    field = field.substr(0, field.find_last_not_of(kBlank) + 1);
+    if (field.starts_with('+')) field.remove_prefix(1);
+    double value = 0;
+    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (error != std::errc() || rest != field.data() + field.size() || !std::isfinite(value))
+      return std::nullopt;
+    numbers.push_back(value);
+    start = end + 1;
+  }
+  return numbers;
 }
 
 Result<Pose> pose_from_list(const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream stream(text);
-  for (std::string field; std::getline(stream, field, ',');) {
-    std::size_t used = 0;
-    try {
-      numbers.push_back(std::stod(field, &used));
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used == 0 || field.find_first_not_of(" \t", used) != std::string::npos ||
-        !std::isfinite(numbers.back()))
-      return fail(CaptureError::bad_pose_file, text);
-  }
-  if (numbers.size() != 7) return fail(CaptureError::bad_pose_file, text);
-  const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
-  if (q.norm() < 1e-6) return fail(CaptureError::bad_pose_file, text + ": the quaternion is zero");
+  const auto numbers = comma_separated(text);
+  if (!numbers) return bad_pose(text, "neither a file nor numbers between commas");
+  if (numbers->size() != 7) return bad_pose(text, std::to_string(numbers->size()) + " numbers instead of 7");
+  const auto& n = *numbers;
+  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);  // Eigen's constructor takes w first
+  if (!(q.norm() > 1e-6 && q.norm() < 1e6)) return bad_pose(text, "the quaternion is zero or huge");
   Pose pose = Pose::Identity();
   pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() << numbers[0], numbers[1], numbers[2];
-  return pose;
+  pose.translation() << n[0], n[1], n[2];
+  return checked(pose, text);
 }
 
 }  // namespace
 
 Result<Pose> parse_pose_json(std::string_view json_text, const std::string& name) {
-  boost::system::error_code error;
-  const json::value document = json::parse(json_text, error);
-  if (error) return fail(CaptureError::bad_pose_file, name + " (" + error.message() + ")");
+  const auto document = parse_json(json_text, name, CaptureError::bad_pose_file);
+  if (!document) return document.error();
   const json::value* matrix =
-      document.is_object() ? document.get_object().if_contains("T_base_sensor") : nullptr;
-  std::vector<double> numbers;
-  if (matrix == nullptr || !collect_numbers(*matrix, numbers)) return fail(CaptureError::bad_pose_file, name);
-  return pose_from_numbers(numbers, name);
+      document->is_object() ? document->get_object().if_contains("T_base_sensor") : nullptr;
+  if (matrix == nullptr) return bad_pose(name, "it holds no T_base_sensor");
+  const auto numbers = row_major(*matrix);
+  if (!numbers) return bad_pose(name, "T_base_sensor is not 3 or 4 rows of 4 numbers");
+  return pose_from_numbers(*numbers, name);
 }
 
 Result<Pose> read_pose(const std::string& file_or_text) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file_or_text, ignored)) return pose_from_list(file_or_text);
-  std::ifstream file(file_or_text);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return parse_pose_json(text.str(), file_or_text);
+  if (!std::filesystem::exists(file_or_text, ignored)) return pose_from_list(file_or_text);
+  const auto text = read_bytes(file_or_text, kMaxFileBytes);
+  if (!text) return text.error();
+  return parse_pose_json(*text, file_or_text);
 }
 
 }  // namespace calibrd

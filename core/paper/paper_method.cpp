@@ -28,11 +28,12 @@ Cloud::Ptr thinned(const Cloud::Ptr& cloud, double voxel_m) {
 }
 
 /// The virtual measurement: CAD points in the virtual sensor's frame. Fills `region` in the base frame.
-Cloud::Ptr model_cloud(const RobotModel& robot, const View& view, const Pose& T_base_virtual, const PaperSettings& settings,
-                       Eigen::AlignedBox3d& region) {
+Cloud::Ptr model_cloud(const RobotModel& robot, const View& view, const Pose& T_base_virtual,
+                       const PaperSettings& settings, Eigen::AlignedBox3d& region) {
   Cloud::Ptr cloud(new Cloud);
   const Pose T_virtual_base = T_base_virtual.inverse();
-  for (const SurfaceSample& sample : sample_surface(robot, view.joint_positions_rad, settings.model_points, settings.seed)) {
+  for (const SurfaceSample& sample :
+       sample_surface(robot, view.joint_positions_rad, settings.model_points, settings.seed)) {
     region.extend(sample.point);
     cloud->push_back(to_pcl(T_virtual_base * sample.point));
   }
@@ -58,11 +59,13 @@ Cloud::Ptr measured_cloud(const CameraModel& camera, const View& view, const Pos
 std::optional<PaperFit> fit_by_paper(const RobotModel& robot, const CameraModel& camera, const View& view,
                                      const Pose& guess_T_base_sensor, const PaperSettings& settings) {
   Eigen::AlignedBox3d region;
-  const Cloud::Ptr model = thinned(model_cloud(robot, view, guess_T_base_sensor, settings, region), settings.voxel_m);
+  const Cloud::Ptr model =
+      thinned(model_cloud(robot, view, guess_T_base_sensor, settings, region), settings.voxel_m);
   if (model->empty()) return std::nullopt;
   region.min().array() -= settings.region_margin_m;
   region.max().array() += settings.region_margin_m;
-  const Cloud::Ptr measured = thinned(measured_cloud(camera, view, guess_T_base_sensor, region), settings.voxel_m);
+  const Cloud::Ptr measured =
+      thinned(measured_cloud(camera, view, guess_T_base_sensor, region), settings.voxel_m);
   if (measured->size() < 10) return std::nullopt;
 
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;

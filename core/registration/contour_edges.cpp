@@ -89,9 +89,15 @@ std::optional<std::vector<float>> sample_profile(const RegistrationView& view, c
   return grey;
 }
 
-/// Signed distance (px, along the normal) from the predicted contour to the strongest near step in the image.
-std::optional<double> find_step(const RegistrationView& view, const CameraModel& camera,
-                                const ContourPoint& point, const ContourSettings& settings) {
+/// Where an image edge lies (px along the normal from the predicted contour), and how sure that is.
+struct Edge {
+  double distance_px;
+  double sigma_px;
+};
+
+/// The strongest near step in the image.
+std::optional<Edge> find_step(const RegistrationView& view, const CameraModel& camera,
+                              const ContourPoint& point, const ContourSettings& settings) {
   const int half = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px));
   const int reach = half + 2;  // two more on each side for the slope
   const auto grey = sample_profile(view, camera, point, reach);
@@ -100,7 +106,7 @@ std::optional<double> find_step(const RegistrationView& view, const CameraModel&
     return std::abs((*grey)[static_cast<std::size_t>(k + 2)] - (*grey)[static_cast<std::size_t>(k - 2)]);
   };
   const auto threshold = static_cast<float>(settings.min_contrast * view.image_noise);
-  std::optional<double> best;
+  std::optional<Edge> best;
   double best_score = 0;
   for (int k = 3; k + 3 < static_cast<int>(grey->size()); ++k) {
     const float here = slope(k), before = slope(k - 1), after = slope(k + 1);
@@ -112,7 +118,7 @@ std::optional<double> find_step(const RegistrationView& view, const CameraModel&
         here * std::exp(-2 * distance * distance / (settings.search_px * settings.search_px));
     if (score > best_score) {
       best_score = score;
-      best = distance;
+      best = Edge{distance, settings.sigma_px};
     }
   }
   return best;
@@ -195,15 +201,27 @@ double misfit(const std::vector<float>& grey, int reach, const ProfileModel& mod
     right += value * row.transpose();
     squares += value * value;
   }
-  return squares - right.dot(normal.ldlt().solve(right));
+  return std::max(squares - right.dot(normal.ldlt().solve(right)), 0.0);
 }
 
-/// Signed distance (px, along the normal) by which the modelled light profile must move to fit the image.
-std::optional<double> fit_profile(const RegistrationView& view, const CameraModel& camera,
-                                  const Pose& T_base_sensor, const ContourPoint& point,
-                                  const ContourSettings& settings) {
+double variation(const std::vector<float>& grey) {
+  double sum = 0, squares = 0;
+  for (const double value : grey) {
+    sum += value;
+    squares += value * value;
+  }
+  return squares - sum * sum / static_cast<double>(grey.size());
+}
+
+/// The move (px, along the normal) by which the modelled light profile fits the image; nothing when it
+/// explains the profile badly, which is then of something else.
+std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel& camera,
+                                const Pose& T_base_sensor, const ContourPoint& point,
+                                const ContourSettings& settings) {
   constexpr double kWindow_px = 4;
   constexpr double kShiftStep_px = 0.5;
+  constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
+  constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
   const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
   const auto grey = sample_profile(view, camera, point, reach);
   if (!grey) return std::nullopt;
@@ -219,14 +237,21 @@ std::optional<double> fit_profile(const RegistrationView& view, const CameraMode
                here = costs[static_cast<std::size_t>(best)],
                after = costs[static_cast<std::size_t>(best + 1)];
   const double bend = before - 2 * here + after;
-  return kShiftStep_px * (best - shifts + (bend > 0 ? 0.5 * (before - after) / bend : 0.0));
+  if (here > kWorstFit * variation(*grey) || bend <= 0) return std::nullopt;
+  // Least squares: variance of the move = 2 s² / curvature of the cost, s² from the misfit. Smoothing and
+  // half-pixel sampling leave about a third of the samples independent.
+  constexpr double kDependence = 3;
+  const double freedom = static_cast<double>(grey->size()) / kDependence - 2;
+  const double variance = 2 * here / std::max(freedom, 1.0) * kShiftStep_px * kShiftStep_px / bend;
+  return Edge{kShiftStep_px * (best - shifts + 0.5 * (before - after) / bend),
+              std::hypot(kModelFloor_px, std::sqrt(variance))};
 }
 
-Observation observe(const ContourPoint& point, double distance_px, const CameraModel& camera,
-                    const Pose& T_base_sensor, const ContourSettings& settings) {
+Observation observe(const RegistrationView& view, int link, const ContourPoint& point, const Edge& edge,
+                    const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings) {
   Observation o;
-  o.residual = distance_px - settings.shift_px;
-  o.sigma = settings.sigma_px;
+  o.residual = edge.distance_px - settings.shift_px;
+  o.sigma = edge.sigma_px;
   const double x = o.residual / settings.kernel_px;
   o.robust_weight = std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
   // The sensor moves by δ: in the image the contour moves by -Jπ Rᵀ (δω×u + δt), seen along its normal.
@@ -236,6 +261,8 @@ Observation observe(const ContourPoint& point, double distance_px, const CameraM
   o.jacobian.setZero();
   o.jacobian.head<6>() << u_base.cross(a), a;
   o.jacobian[kContourShift] = 1;
+  o.jacobian.tail<kMaxJointZeros>() =
+      -view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * a;
   return o;
 }
 
@@ -252,6 +279,7 @@ bool is_contour(const VirtualMeasurement& m, int x, int y) {
 void ContourTally::merge(const ContourTally& other) {
   predicted += other.predicted;
   found += other.found;
+  residuals_px.insert(residuals_px.end(), other.residuals_px.begin(), other.residuals_px.end());
   whitened.insert(whitened.end(), other.whitened.begin(), other.whitened.end());
 }
 
@@ -272,12 +300,13 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
       const auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
       if (!point) continue;
       ++tally.predicted;
-      const auto distance = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
-                                                 : find_step(view, camera, *point, settings);
-      if (!distance) continue;
-      const Observation o = observe(*point, *distance, camera, T_base_sensor, settings);
+      const auto edge = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
+                                             : find_step(view, camera, *point, settings);
+      if (!edge) continue;
+      const Observation o = observe(view, prediction.link[i], *point, *edge, camera, T_base_sensor, settings);
       if (o.robust_weight <= 0) continue;
       ++tally.found;
+      tally.residuals_px.push_back(static_cast<float>(o.residual));
       tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
       equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
     }

@@ -20,7 +20,8 @@ struct ContourSettings {
 struct ContourTally {
   std::size_t predicted = 0;  ///< contour points looked at
   std::size_t found = 0;      ///< of them with an image edge within the kernel
-  std::vector<float> whitened;
+  std::vector<float> residuals_px;
+  std::vector<float> whitened;  ///< residual / sigma
   void merge(const ContourTally& other);
 };
 

@@ -12,7 +12,7 @@ namespace {
 // Modulation of 16 to 120 MHz and its harmonics wiggle with periods of this order; longer ones pass for a
 // scale.
 constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.85, 0.97, 1.10, 1.25};
-constexpr double kSignificantGain = 12;  // in units of χ²; two more parameters gain 2 by chance
+constexpr double kSignificantGain = 0;
 
 struct Fit {
   double gain;  // how far the cost falls

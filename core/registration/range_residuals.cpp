@@ -91,7 +91,10 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
       const Eigen::Vector3d n_base = R * n, u_base = R * (z * d);
       const double factor = -correction.slope(z) / slope;
       o.jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z),
-          0.0;
+          0.0,
+          -factor *
+              view.axes.derivative(prediction.link[i], T_base_sensor.translation() + u_base).transpose() *
+              n_base;
       if (samples != nullptr) samples->push_back({o, z});
       equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
     }

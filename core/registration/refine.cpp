@@ -11,7 +11,7 @@
 
 #include "core/registration/covariance.hpp"
 #include "core/registration/range_period.hpp"
-
+#include "core/registration/reported_joints.hpp"
 namespace calibrd {
 namespace {
 
@@ -23,6 +23,7 @@ struct Stage {
   double contour_search_px;  // 0: no contours yet
   bool fit_profile;          // fit modelled light profiles to the contours rather than find the steepest step
   bool free_bias;
+  bool free_zeros;
 };
 
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
@@ -42,7 +43,7 @@ double robust_sigma(std::vector<float> values) {
   for (float& value : values) value = std::abs(value);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return 1.4826 * static_cast<double>(*middle);
+  return std::max(1.4826 * static_cast<double>(*middle), 1e-3);
 }
 
 class Refiner {
@@ -54,9 +55,10 @@ class Refiner {
   }
 
   Refinement run() {
-    const Stage stages[] = {
-        {6, 2, 0.06, 0, false, false}, {5, 2, 0.03, 10, false, true}, {4, 1, 0, 5, false, true}};
-    const Stage last{settings_.final_iterations, 1, 0, 3, true, true};
+    const Stage stages[] = {{6, 2, 0.06, 0, false, false, false},
+                            {5, 2, 0.03, 10, false, true, false},
+                            {4, 1, 0, 5, false, true, false}};
+    const Stage last{settings_.final_iterations, 1, 0, 3, true, true, settings_.joint_zero_prior > 0};
     double progress = 0;
     for (const Stage& stage : stages) {
       run_stage(stage);
@@ -80,6 +82,9 @@ class Refiner {
     const RangeSettings range = range_settings(stage);
     ContourSettings contour;
     contour.search_px = contour.kernel_px = stage.contour_search_px;
+    // Once profiles are fitted, what lies several sigmas away is another edge.
+    if (stage.fit_profile)
+      contour.kernel_px = std::clamp(kKernelSigmas * contour_sigma_px_, 0.7, stage.contour_search_px);
     contour.stride = 2;
     contour.fit_profile = stage.fit_profile;
     contour.shift_px = result_.contour_shift_px;
@@ -120,6 +125,8 @@ class Refiner {
       result_.range_correlation = sums.range.correlation_factor();
       result_.contour_correlation = sums.contour.correlation_factor();
     }
+    if (!sums.contour_tally.residuals_px.empty())
+      contour_sigma_px_ = robust_sigma(sums.contour_tally.residuals_px);
     NormalEquations all = sums.range.scaled(range_weight(sums));
     all.merge(contour_part(sums));
     if (scatter_is_noise)
@@ -153,6 +160,9 @@ class Refiner {
     add(kCosine, c.periodic_cos_m, settings_.periodic_prior_m);
     add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0, settings_.period_prior_m);
     add(kContourShift, result_.contour_shift_px, settings_.contour_shift_prior_px);
+    const double zero_sigma = stage.free_zeros ? settings_.joint_zero_prior : kHeld;
+    for (int j = 0; j < kMaxJointZeros; ++j)
+      add(static_cast<Parameter>(kJointZeros + j), result_.joint_zeros[j], zero_sigma);
     // A faint hold keeps the solution finite in directions that nothing pins.
     information.diagonal().head<6>().array() += 1e-9 * information.diagonal().head<6>().maxCoeff();
   }
@@ -197,6 +207,10 @@ class Refiner {
       c.periodic_period_m = std::max(0.2, c.periodic_period_m + delta[kPeriod]);
     }
     result_.contour_shift_px += delta[kContourShift];
+    if (stage.free_zeros) {
+      result_.joint_zeros += delta.tail<kMaxJointZeros>();
+      for (RegistrationView& view : views_) view.apply_zeros(result_.joint_zeros);
+    }
     result_.last_step_sigmas = std::sqrt(delta.dot(information * delta));
     small_step_ = result_.last_step_sigmas < settings_.convergence_sigmas;
   }
@@ -206,12 +220,22 @@ class Refiner {
     const NormalEquations all = weighed(sums, true);
     ParameterVector gradient;
     const ParameterMatrix information = with_priors(all, stage, gradient);
-    result_.covariance = pose_covariance(information, all);
+    publish_for_reported_joints(parameter_covariance(information, all));
     result_.residual_rms_m = sums.range.rms_residual();
     const Matrix6d pose_information = information.topLeftCorner<6, 6>();
     result_.weakest_eigenvalue = Eigen::SelfAdjointEigenSolver<Matrix6d>(pose_information).eigenvalues()[0];
     result_.range = std::move(sums.range_tally);
     result_.contour = std::move(sums.contour_tally);
+  }  /// From the pose of the true base to the pose that is right for the joints as reported.
+  void publish_for_reported_joints(const ParameterMatrix& covariance) {
+    Eigen::Matrix<double, 6, kParameters> published = Eigen::Matrix<double, 6, kParameters>::Zero();
+    published.leftCols<6>().setIdentity();
+    published.rightCols<kMaxJointZeros>() =
+        reported_joints_map(views_, predictions_, camera_, result_.T_base_sensor);
+    result_.covariance = published * covariance * published.transpose();
+    result_.joint_zero_sigmas = covariance.diagonal().tail<kMaxJointZeros>().cwiseSqrt();
+    result_.T_base_sensor =
+        perturbed(result_.T_base_sensor, published.rightCols<kMaxJointZeros>() * result_.joint_zeros);
   }
 
   std::span<RegistrationView> views_;
@@ -220,6 +244,7 @@ class Refiner {
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
   double period_start_m_ = 0;
+  double contour_sigma_px_ = 0.5;
   bool small_step_ = false;
 };
 

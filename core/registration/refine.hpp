@@ -17,6 +17,7 @@ struct RefineSettings {
   double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
   double period_prior_m = 0.08;     ///< and of its period about the best candidate
   double contour_shift_prior_px = 0.3;
+  double joint_zero_prior = 1e-3;  ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
   double convergence_sigmas = 0.15;
@@ -26,7 +27,12 @@ struct RefineSettings {
 /// Where the refinement ended and what speaks for it.
 struct Refinement {
   Pose T_base_sensor = Pose::Identity();
-  DepthCorrection correction;
+  DepthCorrection correction;  /// Joint zeros found (true minus reported position) and their standard
+                               /// deviations, rad or m. The pose is the one
+  /// that is right for the joints as reported; the zeros are not hidden in it.
+  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zeros = Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
+  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zero_sigmas =
+      Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
   double contour_shift_px = 0;             ///< image edges lie this far outside the predicted contours
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
   double last_step_sigmas = 0;             ///< length of the last step against the uncertainty of the result

@@ -7,6 +7,7 @@
 
 #include "core/calibration/view.hpp"
 #include "core/geometry/camera_model.hpp"
+#include "core/registration/joint_axes.hpp"
 #include "core/virtual_cell/virtual_cell.hpp"
 
 namespace calibrd {
@@ -15,10 +16,15 @@ namespace calibrd {
 /// that mix two surfaces (depth edges) are gone.
 struct RegistrationView {
   VirtualCell cell;
-  std::vector<float> depth_m;  ///< measured, row-major; 0 = nothing usable
-  std::vector<float> image;    ///< smoothed grey values, row-major; empty when there is none
+  std::vector<double> reported_joints;  ///< RobotModel::position_names() order, rad or m
+  JointAxes axes;                       ///< at the cell's joints
+  std::vector<float> depth_m;           ///< measured, row-major; 0 = nothing usable
+  std::vector<float> image;             ///< smoothed grey values, row-major; empty when there is none
   double image_noise =
       0;  ///< standard deviation of `image`'s horizontal differences without edges, grey values
+
+  /// Puts the robot where the reported joints and these zeros put it.
+  void apply_zeros(const Eigen::Matrix<double, kMaxJointZeros, 1>& zeros);
 };
 
 struct PrepareSettings {

@@ -78,6 +78,8 @@ class RobotModel {
   const std::string& base_link() const { return links_[static_cast<std::size_t>(base_link_)].name; }
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
+  /// What moves each of joints().
+  const std::vector<JointDrive>& drives() const { return drives_; }
 
   /// Names of the joints that a position vector holds, in its order (depth first from the root, siblings by
   /// joint name).

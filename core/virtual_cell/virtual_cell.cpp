@@ -164,6 +164,8 @@ SurfaceHit VirtualCell::hit_along(const Eigen::Vector3d& direction_sensor, const
   return {hit.ray.tfar, normal.dot(direction_sensor.cast<float>()) > 0 ? Eigen::Vector3f(-normal) : normal};
 }
 
+const RobotModel& VirtualCell::robot() const { return *impl_->robot; }
+
 const std::vector<Pose>& VirtualCell::link_poses() const { return impl_->T_base_link; }
 
 void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,

@@ -51,6 +51,8 @@ class VirtualCell {
   /// What one direction (sensor frame, z = 1) meets, seen from `T_base_sensor`.
   SurfaceHit hit_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
 
+  const RobotModel& robot() const;
+
   /// T_base_link of every link of the robot at the current joints.
   const std::vector<Pose>& link_poses() const;
 

@@ -31,7 +31,10 @@ LinkSteps LinkMachine::on_connected(Clock::time_point now) {
 
 LinkSteps LinkMachine::on_connect_failed(const std::error_code& why, Clock::time_point now) {
   if (phase_ != Phase::connecting) return {};
-  lose(State::connecting, {explain_connect_failure(why), {}}, now);
+  const std::error_code code = explain_connect_failure(why);
+  // What has no explanation of its own keeps the words of the operating system.
+  lose(State::connecting, {code, code == RobotLinkError::connect_failed ? why.message() : std::string()},
+       now);
   return finish(now);
 }
 
@@ -85,6 +88,9 @@ LinkSteps LinkMachine::on_tick(Clock::time_point now) {
 LinkSteps LinkMachine::stop() {
   if (phase_ == Phase::stopped) return {};
   phase_ = Phase::stopped;
+  health_.state = State::connecting;
+  health_.reason = Error{RobotLinkError::stopped, {}}.message();
+  health_.status_fresh = false;
   return {link_step::Close{}};
 }
 
@@ -126,7 +132,7 @@ void LinkMachine::take(CodecOutput& output, Clock::time_point now) {
   }
   if (output.status) {
     status_stamp_ = output.status->stamp;
-    steps_.push_back(link_step::DeliverStatus{std::move(*output.status)});
+    steps_.push_back(link_step::DeliverStatus{*output.status});
   }
   if (!output.reply.empty()) steps_.push_back(link_step::Send{std::move(output.reply)});
 }

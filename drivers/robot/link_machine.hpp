@@ -75,7 +75,7 @@ class LinkMachine {
   /// The peer closed (no error) or the connection broke.
   LinkSteps on_closed(const std::error_code& why, Clock::time_point now);
   LinkSteps on_tick(Clock::time_point now);
-  /// For good: every later event is ignored.
+  /// For good: every later event is ignored, nothing more is reported.
   LinkSteps stop();
 
   const RobotLinkHealth& health() const { return health_; }

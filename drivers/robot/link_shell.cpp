@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <utility>
 #include <variant>
@@ -23,14 +24,16 @@ LinkShell::LinkShell(const asio::any_io_executor& executor, const std::string& h
       events_(std::move(events)) {}
 
 void LinkShell::start() {
-  const std::lock_guard lock(mutex_);
-  obey(machine_.start(Clock::now()));
+  asio::post(socket_.get_executor(), [self = shared_from_this()] {
+    const std::lock_guard lock(self->mutex_);
+    self->obey(self->machine_.start(Clock::now()));
+  });
 }
 
 void LinkShell::stop() {
   const std::lock_guard lock(mutex_);
   obey(machine_.stop());
-  stopped_ = true;
+  stopped_ = true;  // completions still under way find it set and do nothing
   timer_.cancel();
 }
 
@@ -39,14 +42,14 @@ RobotLinkHealth LinkShell::health() const {
   return health_;
 }
 
-void LinkShell::obey(LinkSteps steps) {
+void LinkShell::obey(const LinkSteps& steps) {
   {
     const std::lock_guard lock(health_mutex_);
     health_ = machine_.health();
   }
-  for (LinkStep& step : steps) {
+  for (const LinkStep& step : steps) {
     if (stopped_) return;
-    std::visit([this](auto& chosen) { carry_out(std::move(chosen)); }, step);
+    std::visit([this](const auto& chosen) { carry_out(chosen); }, step);
   }
 }
 
@@ -133,7 +136,7 @@ bool LinkShell::read_once() {
   return more;
 }
 
-void LinkShell::carry_out(link_step::Send send) {
+void LinkShell::carry_out(const link_step::Send& send) {
   outbox_.insert(outbox_.end(), send.bytes.begin(), send.bytes.end());
   write_outbox();
 }
@@ -150,7 +153,7 @@ void LinkShell::write_outbox() {
   asio::async_write(socket_, asio::buffer(*leaving_), std::move(written));
 }
 
-void LinkShell::carry_out(link_step::ArmTimer timer) {
+void LinkShell::carry_out(const link_step::ArmTimer& timer) {
   timer_.expires_at(timer.at);
   timer_.async_wait([self = shared_from_this(), round = ++timer_round_](ErrorCode) {
     const std::lock_guard lock(self->mutex_);
@@ -159,15 +162,15 @@ void LinkShell::carry_out(link_step::ArmTimer timer) {
   });
 }
 
-void LinkShell::carry_out(link_step::DeliverJoints delivery) {
+void LinkShell::carry_out(const link_step::DeliverJoints& delivery) {
   if (events_.on_joints) events_.on_joints(delivery.joints);
 }
 
-void LinkShell::carry_out(link_step::DeliverStatus delivery) {
+void LinkShell::carry_out(const link_step::DeliverStatus& delivery) {
   if (events_.on_status) events_.on_status(delivery.status);
 }
 
-void LinkShell::carry_out(link_step::ReportHealth report) {
+void LinkShell::carry_out(const link_step::ReportHealth& report) {
   if (events_.on_health) events_.on_health(report.health);
 }
 

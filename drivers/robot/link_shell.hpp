@@ -36,14 +36,14 @@ class LinkShell : public std::enable_shared_from_this<LinkShell> {
   using Tcp = boost::asio::ip::tcp;
   using ErrorCode = boost::system::error_code;
 
-  void obey(LinkSteps steps);
+  void obey(const LinkSteps& steps);
   void carry_out(link_step::Connect);
   void carry_out(link_step::Close);
-  void carry_out(link_step::Send send);
-  void carry_out(link_step::ArmTimer timer);
-  void carry_out(link_step::DeliverJoints delivery);
-  void carry_out(link_step::DeliverStatus delivery);
-  void carry_out(link_step::ReportHealth report);
+  void carry_out(const link_step::Send& send);
+  void carry_out(const link_step::ArmTimer& timer);
+  void carry_out(const link_step::DeliverJoints& delivery);
+  void carry_out(const link_step::DeliverStatus& delivery);
+  void carry_out(const link_step::ReportHealth& report);
 
   template <class Handler>
   auto for_this_connection(Handler handler);
@@ -65,7 +65,7 @@ class LinkShell : public std::enable_shared_from_this<LinkShell> {
   std::uint64_t connection_ = 0;  // counts attempts and closes: completions of an earlier one are ignored
   std::uint64_t timer_round_ = 0;
   Clock::time_point last_stamp_{};
-  std::array<std::byte, 16 * 1024> inbox_{};
+  std::array<std::byte, std::size_t{16} * 1024> inbox_{};
   std::vector<std::byte> outbox_;
   std::shared_ptr<std::vector<std::byte>> leaving_;
   bool stopped_ = false;

@@ -38,17 +38,11 @@ Endpoints blocking_lookup(const std::string& host, std::uint16_t port) {
   return endpoints;
 }
 
-void post_answer(const asio::any_io_executor& executor, NameLookup::Handler handler, Endpoints endpoints) {
-  asio::post(executor, [handler = std::move(handler), endpoints = std::move(endpoints)] {
-    handler(endpoints.empty() ? RobotLinkError::host_unknown : std::error_code{}, endpoints);
-  });
-}
-
 }  // namespace
 
 /// Outlives the NameLookup while a thread is inside getaddrinfo(). The executor is touched only under the
 /// mutex and while somebody still wants the answer, because its context may be gone afterwards.
-struct NameLookup::Shared {
+struct NameLookup::Shared : std::enable_shared_from_this<Shared> {
   std::mutex mutex;
   bool running = false;
   Handler handler;
@@ -57,8 +51,16 @@ struct NameLookup::Shared {
   void answer(Endpoints endpoints) {
     const std::lock_guard lock(mutex);
     running = false;
-    if (handler) post_answer(executor, std::exchange(handler, nullptr), std::move(endpoints));
-    executor = {};
+    if (!handler) return;
+    asio::post(executor,
+               [shared = shared_from_this(), endpoints = std::move(endpoints)] { shared->tell(endpoints); });
+  }
+  void tell(const Endpoints& endpoints) {
+    const Handler wanted = [this] {
+      const std::lock_guard lock(mutex);
+      return std::exchange(handler, nullptr);  // nothing after cancel()
+    }();
+    if (wanted) wanted(endpoints.empty() ? RobotLinkError::host_unknown : std::error_code{}, endpoints);
   }
 };
 
@@ -69,14 +71,15 @@ NameLookup::NameLookup(asio::any_io_executor executor, std::string host, std::ui
       shared_(std::make_shared<Shared>()) {}
 
 void NameLookup::start(Handler handler) {
+  {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->handler = std::move(handler);
+    shared_->executor = executor_;
+    if (std::exchange(shared_->running, true)) return;
+  }
   boost::system::error_code not_numeric;
   const auto address = asio::ip::make_address(host_, not_numeric);
-  if (!not_numeric) return post_answer(executor_, std::move(handler), {{address, port_}});
-
-  const std::lock_guard lock(shared_->mutex);
-  shared_->handler = std::move(handler);
-  shared_->executor = executor_;
-  if (std::exchange(shared_->running, true)) return;
+  if (!not_numeric) return shared_->answer({{address, port_}});
   std::thread([shared = shared_, host = host_, port = port_] {
     shared->answer(blocking_lookup(host, port));
   }).detach();

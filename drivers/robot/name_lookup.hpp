@@ -29,7 +29,7 @@ class NameLookup {
   /// numbers need no look-up. A call while an earlier look-up still blocks waits for that one's answer.
   void start(Handler handler);
 
-  /// The handler of start() is not called any more, unless its call is already under way.
+  /// The handler of start() is not called any more, unless another thread is just calling it.
   void cancel();
 
  private:

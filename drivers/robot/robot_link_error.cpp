@@ -32,6 +32,7 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
      "correct it"},
 
     {connecting, "connecting to the controller"},
+    {stopped, "calibrd has stopped reading the controller; start it again"},
     {host_unknown, "no such host: check robot.host, or use the controller's IP address"},
     {refused,
      "the controller refuses the connection: its state port opens only when its driver (MotoROS) runs and "

@@ -24,6 +24,7 @@ enum class RobotLinkError {
   unreachable,
   no_answer,
   connect_failed,
+  stopped,
   // A connection lost
   closed_by_controller,
   connection_failed,

@@ -63,7 +63,9 @@ void SimpleMessageCodec::take_frame(std::span<const std::byte> frame, CodecOutpu
 void SimpleMessageCodec::take(const sm::Message& message, CodecOutput& output) {
   if (message.comm_type != sm::CommType::topic) {
     ++output.skipped;
-  } else if (const auto* feedback = std::get_if<sm::JointFeedback>(&message.body)) {
+    return;
+  }
+  if (const auto* feedback = std::get_if<sm::JointFeedback>(&message.body)) {
     take_joints(*feedback, Kind::feedback, output);
   } else if (const auto* groups = std::get_if<sm::JointFeedbackEx>(&message.body)) {
     for (int i = 0; i < groups->group_count; ++i) {

@@ -6,8 +6,8 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/pidfd.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -69,6 +69,11 @@ std::vector<char*> pointers(Strings& strings) {
 /// A copy whose number cannot collide with the fixed ones of the child.
 FileDescriptor copy_above_fixed(int fd) {
   return FileDescriptor(::fcntl(fd, F_DUPFD_CLOEXEC, kFirstUnusedFd + 10));
+}
+
+/// By number: the C++ declaration of pidfd_open in glibc 2.36 lacks its extern "C".
+FileDescriptor open_process(pid_t id) {
+  return FileDescriptor(static_cast<int>(::syscall(SYS_pidfd_open, id, 0)));
 }
 
 class SpawnActions {
@@ -143,7 +148,7 @@ Result<ChildProcess> ChildProcess::spawn(const SensorProcessSettings& settings, 
   if (const int failed = actions.spawn(id, program, arguments, variables); failed != 0)
     return sensor_error(SensorError::program_missing,
                         program.string() + " (" + std::generic_category().message(failed) + ")");
-  return ChildProcess(id, FileDescriptor(::pidfd_open(id, 0)), std::move(ours));
+  return ChildProcess(id, open_process(id), std::move(ours));
 }
 
 ChildProcess::ChildProcess(pid_t id, FileDescriptor end, FileDescriptor messages)
@@ -153,11 +158,11 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : id_(std::exchange(other.id_, 0)), end_(std::move(other.end_)), messages_(std::move(other.messages_)) {}
 
 ChildProcess::~ChildProcess() {
-  constexpr int kMoment_ms = 200;
+  constexpr std::chrono::milliseconds kMoment(200);
   if (id_ == 0 || reap()) return;
   signal(SIGKILL);
   pollfd ended{end_.get(), POLLIN, 0};
-  ::poll(&ended, 1, kMoment_ms);
+  ::poll(&ended, 1, static_cast<int>(kMoment.count()));
   reap();
 }
 

@@ -119,19 +119,24 @@ void SensorProcess::supervise() {
   SupervisorMachine machine(timeouts);
   std::optional<ChildProcess> child;
   std::optional<Clock::time_point> give_up_at;
+  // One time for looking and judging: time this thread lay idle in between must not look like a silent
+  // child's.
+  auto now = Clock::now();
   while (!give_up_at || (!machine.is_finished() && Clock::now() < *give_up_at)) {
-    obey(machine, child);
+    obey(machine, child, now);
     wait(machine, child);
-    observe(machine, child);
+    now = Clock::now();
+    observe(machine, child, now);
     if (!give_up_at && is_stop_requested()) {
       machine.stop();
-      give_up_at = Clock::now() + kLongestStop;
+      give_up_at = now + kLongestStop;
     }
   }
 }
 
-void SensorProcess::obey(SupervisorMachine& machine, std::optional<ChildProcess>& child) {
-  switch (machine.next(Clock::now())) {
+void SensorProcess::obey(SupervisorMachine& machine, std::optional<ChildProcess>& child,
+                         Clock::time_point now) {
+  switch (machine.next(now)) {
     case SupervisorMachine::Order::spawn:
       return spawn(machine, child);
     case SupervisorMachine::Order::terminate:
@@ -170,8 +175,8 @@ void SensorProcess::wait(const SupervisorMachine& machine, const std::optional<C
   ::poll(events.data(), events.size(), milliseconds_until(std::min(machine.due().value_or(far), far)));
 }
 
-void SensorProcess::observe(SupervisorMachine& machine, std::optional<ChildProcess>& child) {
-  const auto now = Clock::now();
+void SensorProcess::observe(SupervisorMachine& machine, std::optional<ChildProcess>& child,
+                            Clock::time_point now) {
   if (child) {
     // Whether it has ended is asked before its messages are read: what it said last is then among them.
     const auto end = child->reap();

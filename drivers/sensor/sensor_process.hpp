@@ -37,9 +37,9 @@ class SensorProcess : public DepthSource {
 
   // The supervising thread.
   void supervise();
-  void obey(SupervisorMachine& machine, std::optional<ChildProcess>& child);
+  void obey(SupervisorMachine& machine, std::optional<ChildProcess>& child, Clock::time_point now);
   void spawn(SupervisorMachine& machine, std::optional<ChildProcess>& child);
-  void observe(SupervisorMachine& machine, std::optional<ChildProcess>& child);
+  void observe(SupervisorMachine& machine, std::optional<ChildProcess>& child, Clock::time_point now);
   void wait(const SupervisorMachine& machine, const std::optional<ChildProcess>& child) const;
   bool is_stop_requested() const;
 

@@ -27,7 +27,9 @@ Status check(const SensorProcessSettings& settings) {
     std::error_code ignored;
     const auto library = settings.openni_directory / "libOpenNI2.so.0";
     if (!std::filesystem::exists(library, ignored))
-      return sensor_error(SensorError::invalid_settings, "openni_directory without " + library.string());
+      return sensor_error(
+          SensorError::invalid_settings,
+          library.string() + " is missing (link the system's library there, put drivers beside it)");
   }
   return check(settings.timeouts);
 }

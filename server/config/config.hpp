@@ -22,14 +22,13 @@ struct ServerConfig {
   int max_connections = 64;
 };
 
-/// How one joint of the model follows the controller's values: model = sign * scale * value + offset +
-/// couplings.
+/// How one joint of the model follows the controller: see JointMappingEntry.
 struct JointConfig {
   int index = -1;  ///< place in the controller's message, from 0; -1: that of the joint in the model
   int sign = 1;
   double scale = 1;
   double offset_deg = 0;
-  std::map<std::string, double> coupling;  ///< other model joint -> factor on its controller value
+  std::map<std::string, double> coupling;  ///< other model joint -> factor on its controller axis
 };
 
 struct RobotConfig {
@@ -52,10 +51,12 @@ struct SensorConfig {
   std::string uri;
   std::filesystem::path oni_file;
   std::filesystem::path driver_directory;
+  bool loop = false;
+  bool mirror = false;
   std::string image = "infrared";
   int fps = 30;
   CameraModel camera{.width = 512, .height = 424};
-  double depth_scale = 0.001;
+  int depth_unit_um = 1000;
   Duration latency{0};
   std::optional<Pose> guess_T_base_sensor;
 };

@@ -98,14 +98,27 @@ Kind<int> integer(int min, int max) {
           [](const int& value) { return std::to_string(value); }};
 }
 
-Kind<int> sign() {
-  return {"1 | -1",
-          [](const RawValue& value) -> Result<int> {
+Kind<int> one_of_numbers(std::vector<int> choices) {
+  std::string name;
+  for (const int choice : choices) name.append(name.empty() ? "" : " | ").append(std::to_string(choice));
+  return {name,
+          [=](const RawValue& value) -> Result<int> {
             const auto* i = std::get_if<std::int64_t>(&value.data);
-            if (!i || (*i != 1 && *i != -1)) return bad(shown(value) + " is neither 1 nor -1");
+            if (!i || std::find(choices.begin(), choices.end(), *i) == choices.end())
+              return bad(shown(value) + " is not one of " + name);
             return static_cast<int>(*i);
           },
           [](const int& value) { return std::to_string(value); }};
+}
+
+Kind<bool> flag() {
+  return {"true | false",
+          [](const RawValue& value) -> Result<bool> {
+            const auto* b = std::get_if<bool>(&value.data);
+            if (!b) return bad(shown(value) + " is neither true nor false");
+            return *b;
+          },
+          [](const bool& value) { return std::string(value ? "true" : "false"); }};
 }
 
 Kind<double> real(double min, double max) {

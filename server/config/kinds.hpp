@@ -26,8 +26,8 @@ struct Kind {
 };
 
 Kind<int> integer(int min, int max);
-/// 1 or -1.
-Kind<int> sign();
+Kind<int> one_of_numbers(std::vector<int> choices);
+Kind<bool> flag();
 Kind<double> real(double min, double max);
 /// A real greater than zero; zero stands for "not set".
 Kind<double> positive_real();

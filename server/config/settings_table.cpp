@@ -90,9 +90,9 @@ void declare_joints(std::vector<Setting>& table) {
       [](Config& c, const Names& n) -> JointConfig& { return c.robot.joints[n[0]]; });
   key("index", &JointConfig::index, integer(-1, 9), "",
       "Place of this joint in the controller's message, from 0. -1: its place in the model.");
-  key("sign", &JointConfig::sign, sign(), "",
+  key("sign", &JointConfig::sign, one_of_numbers({1, -1}), "",
       "1, or -1 where controller and model turn in opposite directions.");
-  key("scale", &JointConfig::scale, real(-1e6, 1e6), "", "Model units per controller unit.");
+  key("scale", &JointConfig::scale, real(1e-6, 1e6), "", "Model units per controller unit.");
   key("offset_deg", &JointConfig::offset_deg, real(-720, 720), "deg",
       "Model position where the controller says 0.");
 }
@@ -102,7 +102,8 @@ void declare_coupling(std::vector<Setting>& table) {
   setting.path = {"robot", "joints", "*", "coupling", "*"};
   const auto kind = real(-1e3, 1e3);
   setting.type = kind.name;
-  setting.meaning = "Factor by which another joint moves this one (FANUC: joint_3 follows joint_2).";
+  setting.meaning =
+      "Factor by which the controller axis of another joint moves this one (FANUC: joint_3 follows joint_2).";
   setting.set = [kind](Config& config, const Names& names, const RawValue& raw) -> Status {
     auto value = kind.read(raw);
     if (!value) return value.error();
@@ -122,12 +123,16 @@ void declare_sensors(std::vector<Setting>& table) {
   SectionDeclarer<SensorConfig> key(
       table, {"sensors", "*"}, [](Config& c, const Names& n) -> SensorConfig& { return c.sensors[n[0]]; });
   key("driver", &SensorConfig::driver, one_of({"openni2"}), "", "How frames are read.");
-  key("uri", &SensorConfig::uri, text(), "", "OpenNI2 device URI. Empty: the first device found.");
+  key("uri", &SensorConfig::uri, text(), "",
+      "OpenNI2 device: a URI, a pattern for URIs (with *), or serial:NUMBER. Empty: the first device found.");
   key("oni_file", &SensorConfig::oni_file, path(), "", "Recording to play instead of a device.");
+  key("loop", &SensorConfig::loop, flag(), "", "Plays the recording again and again.");
   key("driver_directory", &SensorConfig::driver_directory, path(), "",
-      "Folder with the OpenNI2 driver (lib*.so.0) to use. Empty: those of the system.");
+      "Folder with libOpenNI2.so.0 and OpenNI2/Drivers/lib….so.0 to use. Empty: those of the system.");
   key("image", &SensorConfig::image, one_of({"infrared", "color", "none"}), "",
       "Image stream read beside the depth.");
+  key("mirror", &SensorConfig::mirror, flag(), "",
+      "Flips every row; only for drivers that deliver mirrored images and deny it.");
   const auto camera = [](auto member) {
     return [member](SensorConfig & sensor) -> auto& { return sensor.camera.*member; };
   };
@@ -146,7 +151,8 @@ void declare_sensors(std::vector<Setting>& table) {
   key("cy", camera(&CameraModel::cy), positive_real(), "px", "Principal point.").required = true;
   key("distortion", camera(&CameraModel::distortion), five_reals(), "",
       "k1, k2, p1, p2, k3 as OpenCV defines them.");
-  key("depth_scale", &SensorConfig::depth_scale, real(1e-6, 1), "m", "Metres per unit of the depth image.");
+  key("depth_unit_um", &SensorConfig::depth_unit_um, one_of_numbers({1000, 100}), "µm",
+      "Unit of the depth values to ask the device for; the other one is taken where it is not offered.");
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",

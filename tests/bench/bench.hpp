@@ -18,6 +18,7 @@ struct Input {
   RobotModel robot;
   CameraModel camera;
   std::vector<View> views;
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> check_points;  ///< p_sensor, p_base of truth.json
   std::optional<Pose> truth_T_base_sensor;  ///< of truth.json, where there is one
 };
 

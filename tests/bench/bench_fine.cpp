@@ -14,7 +14,17 @@ const char* name_of(Verdict verdict) {
   return verdict == Verdict::accepted ? "accepted" : verdict == Verdict::uncertain ? "uncertain" : "rejected";
 }
 
-void print_run(const CalibrationResult& result, const Pose& reference) {
+/// Root mean square distance (mm) over the check points: where the pose puts them against where they should
+/// be.
+double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
+  if (!result.T_base_sensor || input.check_points.empty()) return NAN;
+  double squares = 0;
+  for (const auto& [p_sensor, p_base] : input.check_points)
+    squares += (*result.T_base_sensor * p_sensor - p_base).squaredNorm();
+  return 1e3 * std::sqrt(squares / static_cast<double>(input.check_points.size()));
+}
+
+void print_run(const Input& input, const CalibrationResult& result, const Pose& reference) {
   const Vector6d error =
       result.T_base_sensor ? difference(reference, *result.T_base_sensor) : Vector6d::Constant(NAN);
   const double nees = error.dot(result.covariance.ldlt().solve(error));
@@ -27,6 +37,8 @@ void print_run(const CalibrationResult& result, const Pose& reference) {
       1e3 * result.sigma_position_m, 1e3 * result.sigma_rotation_rad, nees, result.coverage,
       1e3 * result.residual_rms_m, 1e3 * result.depth_correction.offset_m, result.depth_correction.scale,
       result.time_total_ms);
+  if (!input.check_points.empty())
+    std::printf(", \"check_points_mm\": %.3f", check_point_rms_mm(input, result));
   std::printf(", \"reasons\": [");
   for (std::size_t i = 0; i < result.reasons.size(); ++i)
     std::printf("%s\"%s\"", i > 0 ? ", " : "", result.reasons[i].code.c_str());
@@ -75,7 +87,7 @@ int run_fine(const FineOptions& options) {
     if (options.vary && run > 0) settings.guess_T_base_sensor = guess();
     const CalibrationResult result = calibrate(input.robot, input.camera, input.views, settings);
     milliseconds.push_back(result.time_total_ms);
-    if (options.vary || run == 0) print_run(result, *reference);
+    if (options.vary || run == 0) print_run(input, result, *reference);
     if (result.T_base_sensor) error = difference(*reference, *result.T_base_sensor);
   }
   std::printf("{\"median_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, \"views\": %zu}\n",

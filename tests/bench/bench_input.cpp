@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <boost/json.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
 
 #include "bench.hpp"
 #include "core/calibration/model_views.hpp"
@@ -10,6 +13,25 @@
 
 namespace calibrd::bench {
 namespace {
+
+using Point = Eigen::Vector3d;
+
+/// Where the sensor sees the last link and where the reported joints put it; empty without a truth.json.
+std::vector<std::pair<Point, Point>> read_check_points(const std::filesystem::path& truth) {
+  std::ifstream file(truth);
+  std::ostringstream text;
+  text << file.rdbuf();
+  boost::system::error_code error;
+  const boost::json::value document = boost::json::parse(text.str(), error);
+  std::vector<std::pair<Point, Point>> points;
+  if (error || !document.is_object() || !document.get_object().contains("check_points")) return points;
+  const auto point = [](const boost::json::value& v) {
+    return Point(v.at(0).to_number<double>(), v.at(1).to_number<double>(), v.at(2).to_number<double>());
+  };
+  for (const boost::json::value& entry : document.at("check_points").as_array())
+    points.emplace_back(point(entry.at("p_sensor")), point(entry.at("p_base")));
+  return points;
+}
 
 [[noreturn]] void stop(const Error& error) {
   std::fprintf(stderr, "calibrd-bench: %s\n", error.message().c_str());
@@ -33,7 +55,8 @@ Input load(const std::filesystem::path& capture_dir, const Paths& models) {
   const CameraModel camera = capture->camera;
   auto views = views_in_model_order(*robot, std::move(*capture));
   if (!views) stop(views.error());
-  Input input{std::move(*robot), camera, std::move(*views), std::nullopt};
+  Input input{std::move(*robot), camera, std::move(*views), read_check_points(capture_dir / "truth.json"),
+              std::nullopt};
   if (auto truth = read_pose((capture_dir / "truth.json").string())) input.truth_T_base_sensor = *truth;
   return input;
 }

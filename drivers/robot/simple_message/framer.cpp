@@ -28,13 +28,12 @@ Error wrong_order(ByteOrder configured) {
 }  // namespace
 
 Result<Taken> Framer::take(std::span<const std::byte> bytes) {
-  if (broken_) return *broken_;
   if (complete_) {
     complete_ = false;
     size_ = frame_size_ = 0;
   }
   Taken taken;
-  if (frame_size_ == 0) {
+  if (frame_size_ == 0) {  // also after an error: the bad length stays and fails again
     taken.consumed = append(bytes, kLengthBytes);
     if (size_ < kLengthBytes) return taken;
     if (const Status checked = check_length(); !checked) return checked.error();
@@ -45,6 +44,12 @@ Result<Taken> Framer::take(std::span<const std::byte> bytes) {
     taken.frame = std::span<const std::byte>(buffer_.data(), size_);
   }
   return taken;
+}
+
+void Framer::reset() {
+  size_ = frame_size_ = 0;
+  complete_ = false;
+  first_frame_ = true;
 }
 
 std::size_t Framer::append(std::span<const std::byte> bytes, std::size_t target_size) {
@@ -65,9 +70,8 @@ Status Framer::check_length() {
   // length.
   const ByteOrder other = order_ == ByteOrder::little ? ByteOrder::big : ByteOrder::little;
   const bool other_fits = first_frame_ && plausible(length_as(other, buffer_));
-  broken_ = other_fits ? wrong_order(order_)
-                       : Error{SimpleMessageError::length_out_of_range, "length " + std::to_string(length)};
-  return *broken_;
+  if (other_fits) return wrong_order(order_);
+  return Error{SimpleMessageError::length_out_of_range, "length " + std::to_string(length)};
 }
 
 }  // namespace calibrd::simple_message

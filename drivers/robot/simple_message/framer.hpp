@@ -38,7 +38,7 @@ class Framer {
   bool inside_frame() const { return size_ > 0 && !complete_; }
 
   /// Starts over, for a new connection.
-  void reset() { *this = Framer(order_); }
+  void reset();
 
  private:
   std::size_t append(std::span<const std::byte> bytes, std::size_t target_size);
@@ -50,7 +50,6 @@ class Framer {
   std::size_t frame_size_ = 0;  // 0 until the length is known
   bool complete_ = false;
   bool first_frame_ = true;
-  std::optional<Error> broken_;
 };
 
 }  // namespace calibrd::simple_message

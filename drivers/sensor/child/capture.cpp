@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
 constexpr auto kLongestWait = 100ms;  // also the slowest heartbeat, and the delay of SIGTERM
-constexpr int kMostBadFrames = 30;    // a damaged USB transfer is a lost frame, a row of them is a wrong mode
+constexpr int kMostBadFrames = 10;    // a damaged USB transfer is a lost frame, a row of them is a wrong mode
 constexpr int kMostAloneFrames = 90;
 constexpr int kAssumedFps = 30;
 
@@ -65,23 +65,29 @@ Status Capture::open_depth() {
 
 /// Without its image the sensor still calibrates, so what is wrong with the image is a notice, not a failure.
 void Capture::open_image() {
+  const bool is_color = request_.image == ImageKind::color;
+  const bool is_registered = register_depth(is_color);
   if (request_.image == ImageKind::none) return;
-  auto stream = image_stream();
+  auto stream = is_color && !is_registered
+                    ? Result<std::unique_ptr<OpenNiStream>>(sensor_error(
+                          SensorError::stream_failed, "the device does not register depth to colour"))
+                    : image_stream(is_color);
   if (stream)
     image_ = std::move(*stream);
   else
     notice_ = "depth without image: " + stream.error().detail;
 }
 
-Result<std::unique_ptr<OpenNiStream>> Capture::image_stream() {
-  const bool is_color = request_.image == ImageKind::color;
+/// Depth in the colour camera's pixel grid, or in its own, whatever the driver's default is.
+bool Capture::register_depth(bool to_color) {
   openni::Device& device = device_->handle();
-  const auto registration =
-      is_color ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
-  const bool is_registered = device.setImageRegistrationMode(registration) == openni::STATUS_OK;
-  if (is_color && !is_registered)
-    return sensor_error(SensorError::stream_failed, "the device does not register depth to colour");
+  const auto mode = to_color ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
+  // Asked first: some drivers accept what they do not do.
+  return device.isImageRegistrationModeSupported(mode) &&
+         device.setImageRegistrationMode(mode) == openni::STATUS_OK;
+}
 
+Result<std::unique_ptr<OpenNiStream>> Capture::image_stream(bool is_color) {
   const auto sensor = is_color ? openni::SENSOR_COLOR : openni::SENSOR_IR;
   const auto offers = device_->modes(sensor);
   const std::span<const PixelFormat> formats =
@@ -118,11 +124,15 @@ SensorStreaming Capture::description() const {
 Status Capture::run(FrameRingWriter& ring, ParentLink& parent) {
   Pairing pairing(image_ != nullptr, period_of(depth_->mode()));
   parent.send(description());
+  auto idle_at = steady_clock::now();
   while (!is_stop_requested()) {
     ring.beat();
     const auto received = receive(pairing);
     if (!received) return received.error();
-    while (auto pair = pairing.next(steady_clock::now()))
+    // Time counts only once nothing is left to read: a late process must not take its own delay for the
+    // image's.
+    if (!*received) idle_at = steady_clock::now();
+    while (auto pair = pairing.next(idle_at))
       if (auto delivered = deliver(*pair, ring, parent); !delivered) return delivered;
     if (auto checked = check_device(!*received); !checked) return checked;
   }
@@ -130,7 +140,8 @@ Status Capture::run(FrameRingWriter& ring, ParentLink& parent) {
 }
 
 Result<bool> Capture::receive(Pairing& pairing) {
-  std::array<openni::VideoStream*, 2> streams{&depth_->handle(), image_ ? &image_->handle() : nullptr};
+  std::array<openni::VideoStream*, 2> streams{image_ ? &image_->handle() : &depth_->handle(),
+                                              &depth_->handle()};
   auto wait = kLongestWait;
   if (const auto deadline = pairing.deadline())
     wait =
@@ -140,19 +151,19 @@ Result<bool> Capture::receive(Pairing& pairing) {
                                                        static_cast<int>(wait.count()));
   if (status == openni::STATUS_TIME_OUT) return false;
   if (status != openni::STATUS_OK) return openni_error(SensorError::stream_failed, device_->description());
-  accept(static_cast<std::size_t>(ready), pairing);
+  accept(image_ && ready == 0, pairing);
   return true;
 }
 
-void Capture::accept(std::size_t stream, Pairing& pairing) {
+void Capture::accept(bool is_image, Pairing& pairing) {
   const auto stamp = steady_clock::now();
-  auto frame = (stream == 0 ? depth_ : image_)->read();
+  auto frame = (is_image ? image_ : depth_)->read();
   if (!frame.isValid()) return;
   const Moment moment = moment_of(frame);
-  if (stream == 1) return pairing.add_image(std::move(frame), moment);
+  if (is_image) return pairing.add_image(frame, moment);
   last_index_ = moment.index;
   if (const auto sequence = numbering_.number(moment))
-    pairing.add_depth({std::move(frame), *sequence, stamp}, moment, stamp);
+    pairing.add_depth({frame, *sequence, stamp}, moment, stamp);
 }
 
 Status Capture::deliver(Pairing::Pair& pair, FrameRingWriter& ring, ParentLink& parent) {

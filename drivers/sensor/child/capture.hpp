@@ -27,7 +27,8 @@ class Capture {
  private:
   Status open_depth();
   void open_image();
-  Result<std::unique_ptr<OpenNiStream>> image_stream();
+  bool register_depth(bool to_color);
+  Result<std::unique_ptr<OpenNiStream>> image_stream(bool is_color);
   Status start();
   SensorStreaming description() const;
 
@@ -40,7 +41,7 @@ class Capture {
 
   /// Waits for a stream to have a frame, at most until something else is due. False: nothing came.
   Result<bool> receive(Pairing& pairing);
-  void accept(std::size_t stream, Pairing& pairing);
+  void accept(bool is_image, Pairing& pairing);
   Status deliver(Pairing::Pair& pair, FrameRingWriter& ring, ParentLink& parent);
   void note_pairing(bool is_paired, ParentLink& parent);
   Status check_device(bool is_idle) const;

@@ -4,6 +4,7 @@
 // sensor.
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,10 @@ int deliver_frames(const StreamRequest& request, ParentLink& parent) {
   Capture capture(request);
   auto result = capture.open(**library);
   if (result) result = capture.run(*ring, parent);
-  return end(result, parent);
+  const int status = end(result, parent);
+  // A file needs no closing, and OpenNI2's player can crash in it: its thread may still read.
+  if (!request.recording.empty()) std::_Exit(status);
+  return status;
 }
 
 int serve(pid_t parent_id, std::span<const std::string> arguments) {

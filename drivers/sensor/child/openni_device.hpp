@@ -40,7 +40,7 @@ class OpenNiDevice : openni::OpenNI::DeviceDisconnectedListener, openni::OpenNI:
  public:
   /// Opens what the request asks for.
   static Result<std::unique_ptr<OpenNiDevice>> open(const OpenNi& library, const StreamRequest& request);
-  ~OpenNiDevice();
+  ~OpenNiDevice() override;
   OpenNiDevice(const OpenNiDevice&) = delete;
   OpenNiDevice& operator=(const OpenNiDevice&) = delete;
 

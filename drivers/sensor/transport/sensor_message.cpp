@@ -3,6 +3,7 @@
 #include "drivers/sensor/transport/sensor_message.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace calibrd {
 namespace {

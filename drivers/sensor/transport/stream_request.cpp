@@ -11,7 +11,7 @@
 namespace calibrd {
 namespace {
 
-constexpr int kMaxSide_px = 4096;
+constexpr int kMaxSide = 4096;  // px
 constexpr int kMaxFps = 1000;
 
 template <class T>
@@ -71,8 +71,8 @@ Error bad(const char* key, const std::string& value) {
 }  // namespace
 
 Status check(const StreamRequest& r) {
-  if (r.width < 1 || r.width > kMaxSide_px) return bad("width", std::to_string(r.width));
-  if (r.height < 1 || r.height > kMaxSide_px) return bad("height", std::to_string(r.height));
+  if (r.width < 1 || r.width > kMaxSide) return bad("width", std::to_string(r.width));
+  if (r.height < 1 || r.height > kMaxSide) return bad("height", std::to_string(r.height));
   if (r.fps < 0 || r.fps > kMaxFps) return bad("fps", std::to_string(r.fps));
   if (r.depth_unit_um != 1000 && r.depth_unit_um != 100)
     return bad("depth_unit_um", std::to_string(r.depth_unit_um));

@@ -169,7 +169,7 @@ TEST(VirtualCell, DistortedEdgeLiesWhereTheCameraProjectsIt) {
   }
 }
 
-TEST(VirtualCell, DepthAlongEqualsMeasureAtPixelCentres) {
+TEST(VirtualCell, HitAlongARayEqualsMeasureAtPixelCentres) {
   const RobotModel robot = robot_from(link("base", box_shape({0.4, 0.3, 0.5}, shift(0.1, 0.05, 0.3))));
   const CameraModel camera{161, 121, 110, 112, 78.2, 61.3, {0.09, -0.27, 0.002, -0.001, 0.09}};
   const VirtualCell cell(robot);
@@ -177,9 +177,10 @@ TEST(VirtualCell, DepthAlongEqualsMeasureAtPixelCentres) {
   int hits = 0;
   for (int y = 0; y < camera.height; y += 2) {
     for (int x = 0; x < camera.width; x += 2) {
-      const float depth = cell.depth_along(camera.ray(x, y), skew_pose());
-      EXPECT_NEAR(depth, m.depth_m[pixel(m, x, y)], 2e-6F) << x << ' ' << y;
-      hits += depth > 0;
+      const SurfaceHit hit = cell.hit_along(camera.ray(x, y), skew_pose());
+      EXPECT_NEAR(hit.depth_m, m.depth_m[pixel(m, x, y)], 2e-6F) << x << ' ' << y;
+      EXPECT_LT((hit.normal - m.normal[pixel(m, x, y)]).norm(), 1e-5F) << x << ' ' << y;
+      hits += hit.depth_m > 0;
     }
   }
   EXPECT_GT(hits, 300);

@@ -210,6 +210,11 @@ TEST(SimpleMessageCodec, NamesTheGroupThatTheControllerSends) {
   EXPECT_NE(output.joints_problem->message().find("sends group 2, group 0 is configured"), std::string::npos);
 }
 
+TEST(SimpleMessageCodec, FindsNoFaultInOtherGroupsBesideItsOwn) {
+  const CodecOutput output = decode_all(topic(feedback(0.1, 0)) + topic(feedback(0.2, 1)));
+  EXPECT_FALSE(output.joints_problem);
+}
+
 TEST(SimpleMessageCodec, ServesJointsThatComeTwiceInACycleOnce) {
   JointFeedbackEx both;
   both.group_count = 2;

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/http/http_server.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <condition_variable>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "api/http/http_server_error.hpp"
+#include "api/http/session.hpp"
+
+namespace calibrd::api {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+/// Refused connections that are being told so at a time; beyond it they are just closed.
+constexpr std::size_t kMaxRefusals = 32;
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+Error translated(const ErrorCode& why, const std::string& where) {
+  if (why == asio::error::address_in_use) return {HttpServerError::port_in_use, where};
+  if (why == asio::error::access_denied) return {HttpServerError::not_allowed, where};
+  if (why == boost::system::errc::address_not_available) return {HttpServerError::bad_address, where};
+  return {HttpServerError::cannot_listen, where + " (" + why.message() + ")"};
+}
+
+}  // namespace
+
+class HttpServer::Impl {
+ public:
+  Impl(const HttpServerSettings& settings, const Router& router, std::function<void(const AccessRecord&)> log)
+      : settings_(settings),
+        log_(std::move(log)),
+        workers_(std::make_unique<asio::thread_pool>(static_cast<std::size_t>(settings.workers))),
+        context_{settings_, router, log_, *workers_} {}
+
+  ~Impl() {
+    stop(std::chrono::milliseconds(0));
+    // What waits in the workers holds on to sessions, and sessions hold on to io_: in this order.
+    workers_.reset();
+    sessions_.clear();
+  }
+
+  Status listen() {
+    const auto where = settings_.address + ":" + std::to_string(settings_.port);
+    ErrorCode failure;
+    const auto address = asio::ip::make_address(settings_.address, failure);
+    if (failure) return Error{HttpServerError::bad_address, where};
+    const tcp::endpoint endpoint(address, settings_.port);
+    acceptor_.open(endpoint.protocol(), failure);
+    if (!failure) acceptor_.set_option(tcp::acceptor::reuse_address(true), failure);
+    if (!failure) acceptor_.bind(endpoint, failure);
+    if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
+    if (failure) return translated(failure, where);
+    port_ = acceptor_.local_endpoint(failure).port();
+    return Done{};
+  }
+
+  void run() {
+    asio::co_spawn(io_, accept_connections(), asio::detached);
+    thread_ = std::thread([this] { io_.run(); });
+  }
+
+  void stop(std::chrono::milliseconds grace) {
+    if (!thread_.joinable()) return;
+    asio::post(io_, [this] { begin_stop(); });
+    {
+      std::unique_lock lock(mutex_);
+      all_ended_.wait_for(lock, grace, [this] { return ended_; });
+    }
+    io_.stop();
+    thread_.join();
+    workers_->stop();
+    workers_->join();
+  }
+
+  std::uint16_t port() const { return port_; }
+
+ private:
+  asio::awaitable<void> accept_connections() {
+    for (;;) {
+      ErrorCode failure;
+      auto socket = co_await acceptor_.async_accept(asio::redirect_error(asio::use_awaitable, failure));
+      if (context_.stopping) co_return;
+      if (failure) {  // out of file descriptors, most likely: others end, then there is room again
+        asio::steady_timer pause(io_, kAcceptPause);
+        co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, failure));
+        continue;
+      }
+      socket.set_option(tcp::no_delay(true), failure);
+      begin_session(std::move(socket));
+    }
+  }
+
+  void begin_session(tcp::socket socket) {
+    const auto limit = static_cast<std::size_t>(settings_.max_connections);
+    if (sessions_.size() >= limit + kMaxRefusals) return;
+    const bool serve = sessions_.size() < limit;
+    const auto session = sessions_.emplace(sessions_.end(), std::move(socket), context_);
+    asio::co_spawn(io_, serve ? session->run() : session->refuse(),
+                   [this, session](const std::exception_ptr&) {
+                     sessions_.erase(session);
+                     note_end();
+                   });
+  }
+
+  void begin_stop() {
+    context_.stopping = true;
+    ErrorCode ignored;
+    acceptor_.close(ignored);
+    for (auto& session : sessions_) session.end_when_idle();
+    note_end();
+  }
+
+  void note_end() {
+    if (!context_.stopping || !sessions_.empty()) return;
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    all_ended_.notify_all();
+  }
+
+  const HttpServerSettings settings_;
+  const std::function<void(const AccessRecord&)> log_;
+  std::unique_ptr<asio::thread_pool> workers_;
+  SessionContext context_;  // used on the network thread only, as what follows up to port_
+  std::list<Session> sessions_;
+  asio::io_context io_{1};
+  tcp::acceptor acceptor_{io_};
+  std::uint16_t port_ = 0;
+  std::thread thread_;
+
+  std::mutex mutex_;
+  std::condition_variable all_ended_;
+  bool ended_ = false;  // guarded by mutex_
+};
+
+Result<std::unique_ptr<HttpServer>> HttpServer::start(const HttpServerSettings& settings,
+                                                      const Router& router,
+                                                      std::function<void(const AccessRecord&)> log) {
+  auto impl = std::make_unique<Impl>(settings, router, std::move(log));
+  if (auto status = impl->listen(); !status) return status.error();
+  impl->run();
+  return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
+}
+
+HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+HttpServer::~HttpServer() = default;
+void HttpServer::stop(std::chrono::milliseconds grace) { impl_->stop(grace); }
+std::uint16_t HttpServer::port() const { return impl_->port(); }
+
+}  // namespace calibrd::api

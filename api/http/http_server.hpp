@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "api/routes/router.hpp"
+#include "core/base/result.hpp"
+
+namespace calibrd::api {
+
+struct HttpServerSettings {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080;                         ///< 0: any free one
+  int max_connections = 64;                          ///< more are answered 503 and closed
+  int workers = 4;                                   ///< threads for slow routes
+  std::chrono::milliseconds idle_timeout{60'000};    ///< between two requests of a connection
+  std::chrono::milliseconds header_timeout{10'000};  ///< from the first byte to the end of the header
+  std::chrono::milliseconds body_timeout{10'000};
+  std::chrono::milliseconds write_timeout{60'000};
+  std::uint32_t header_limit = 8 * 1024;
+  std::uint64_t body_limit = 64 * 1024;
+};
+
+/// What was asked and answered, for the log.
+struct AccessRecord {
+  std::string method;
+  std::string path;
+  int status = 0;
+  std::chrono::microseconds duration{0};
+};
+
+/// Serves a router over HTTP/1.1. Quick routes are answered on its one network thread, slow ones on worker
+/// threads, so that no quick answer ever waits for a slow one.
+class HttpServer {
+ public:
+  /// Listens when it returns. `router` must outlive the server. `log` is called on the network thread.
+  /// Errors: HttpServerError, the detail naming address and port.
+  static Result<std::unique_ptr<HttpServer>> start(const HttpServerSettings& settings, const Router& router,
+                                                   std::function<void(const AccessRecord&)> log = {});
+  ~HttpServer();
+
+  /// Takes no more connections, lets requests under way end within `grace`, then closes everything. Waits for
+  /// slow routes that are still being answered: their service must let go first.
+  void stop(std::chrono::milliseconds grace = std::chrono::milliseconds(300));
+
+  std::uint16_t port() const;
+
+ private:
+  class Impl;
+  explicit HttpServer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calibrd::api

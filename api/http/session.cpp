@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/http/session.hpp"
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include "api/routes/responses.hpp"
+
+namespace calibrd::api {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+constexpr std::size_t kReadAtOnce = 4096;
+
+std::optional<Request> request_of(http::request<http::string_body>& message) {
+  auto target = parse_target(message.target());
+  if (!target) return std::nullopt;
+  Request request{
+      std::string(message.method_string()), std::move(target->first), std::move(target->second), {}, {}};
+  for (const auto& field : message) {
+    std::string name(field.name_string());
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    request.headers[name] = std::string(field.value());
+  }
+  request.body = std::move(message.body());
+  return request;
+}
+
+template <class Body>
+http::response<Body> heading(const Response& response, bool keep_alive) {
+  http::response<Body> message{static_cast<http::status>(response.status), 11};
+  for (const auto& [name, value] : response.headers) message.insert(name, value);
+  message.set(http::field::server, "calibrd");
+  message.set("X-Content-Type-Options", "nosniff");
+  message.keep_alive(keep_alive);
+  return message;
+}
+
+/// The problem a client is told when its request could not be read; nothing when nobody is there to be told.
+std::optional<ApiError> problem_of(beast::error_code why) {
+  if (why == http::error::header_limit) return ApiError::header_too_large;
+  if (why == http::error::body_limit) return ApiError::body_too_large;
+  const bool gone = why == http::error::end_of_stream || why == http::error::partial_message;
+  if (!gone && why.category() == make_error_code(http::error::bad_method).category())
+    return ApiError::bad_request;
+  return std::nullopt;
+}
+
+bool wants_continue(const http::request<http::string_body>& message) {
+  return message.version() >= 11 && beast::iequals(message[http::field::expect], "100-continue");
+}
+
+}  // namespace
+
+asio::awaitable<void> Session::run() {
+  while (!context_.stopping && co_await await_request()) {
+    Parser parser;
+    const auto failure = co_await read(parser);
+    if (failure) {
+      co_await refuse_unreadable(failure);
+      break;
+    }
+    if (!co_await answer(parser)) break;
+  }
+  beast::error_code ignored;
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+asio::awaitable<void> Session::refuse() {
+  co_await write(problem(ApiError::too_many_connections), false, false);
+  beast::error_code ignored;
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+void Session::end_when_idle() {
+  if (idle_) stream_.close();
+}
+
+/// Waits, patiently, for the first bytes of a request. False: the connection has ended.
+asio::awaitable<bool> Session::await_request() {
+  if (buffer_.size() > 0) co_return true;
+  idle_ = true;
+  stream_.expires_after(context_.settings.idle_timeout);
+  beast::error_code failure;
+  const auto space = buffer_.prepare(kReadAtOnce);
+  const auto size =
+      co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
+  buffer_.commit(size);
+  idle_ = false;
+  co_return !failure && size > 0;
+}
+
+/// Reads the rest of the request: header and body each have a deadline in all, however slowly they trickle
+/// in.
+asio::awaitable<beast::error_code> Session::read(Parser& parser) {
+  parser.header_limit(context_.settings.header_limit);
+  parser.body_limit(context_.settings.body_limit);
+  beast::error_code failure;
+  stream_.expires_after(context_.settings.header_timeout);
+  co_await http::async_read_header(stream_, buffer_, parser,
+                                   asio::redirect_error(asio::use_awaitable, failure));
+  if (failure) co_return failure;
+  stream_.expires_after(context_.settings.body_timeout);
+  if (wants_continue(parser.get())) {
+    http::response<http::empty_body> go_on{http::status::continue_, 11};
+    co_await http::async_write(stream_, go_on, asio::redirect_error(asio::use_awaitable, failure));
+    if (failure) co_return failure;
+  }
+  co_await http::async_read(stream_, buffer_, parser, asio::redirect_error(asio::use_awaitable, failure));
+  co_return failure;
+}
+
+/// True: the connection goes on.
+asio::awaitable<bool> Session::answer(Parser& parser) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto message = parser.release();
+  const bool keep_alive = message.keep_alive() && !context_.stopping;
+  const bool head = message.method() == http::verb::head;
+  const auto request = request_of(message);
+  if (!request)
+    co_return co_await write(problem(ApiError::bad_request, "the path cannot be decoded"), head, keep_alive);
+  stream_.expires_never();
+  auto response = co_await dispatch(*request);
+  if (context_.log) {
+    const auto duration = std::chrono::steady_clock::now() - begin;
+    context_.log({request->method, request->path, response.status,
+                  std::chrono::duration_cast<std::chrono::microseconds>(duration)});
+  }
+  co_return co_await write(std::move(response), head, keep_alive);
+}
+
+asio::awaitable<Response> Session::dispatch(const Request& request) {
+  if (context_.router.cost(request) == Cost::quick) co_return context_.router.answer(request);
+  auto work = [&router = context_.router, &request]() -> asio::awaitable<Response> {
+    co_return router.answer(request);
+  };
+  co_return co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
+}
+
+asio::awaitable<bool> Session::write(Response response, bool head, bool keep_alive) {
+  const bool bodiless = response.status == 204 || response.status == 304;
+  stream_.expires_after(context_.settings.write_timeout);
+  beast::error_code failure;
+  if (head || bodiless) {
+    auto message = heading<http::empty_body>(response, keep_alive);
+    if (!bodiless) message.content_length(response.body.size());
+    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
+  } else {
+    auto message = heading<http::string_body>(response, keep_alive);
+    message.body() = std::move(response.body);
+    message.prepare_payload();
+    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
+  }
+  co_return keep_alive && !failure;
+}
+
+asio::awaitable<void> Session::refuse_unreadable(beast::error_code why) {
+  if (const auto error = problem_of(why)) co_await write(problem(*error, why.message()), false, false);
+}
+
+}  // namespace calibrd::api

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include "api/http/http_server.hpp"
+
+namespace calibrd::api {
+
+/// What all connections of a server share. Used on its network thread only.
+struct SessionContext {
+  const HttpServerSettings& settings;
+  const Router& router;
+  const std::function<void(const AccessRecord&)>& log;
+  boost::asio::thread_pool& workers;
+  bool stopping = false;
+};
+
+/// One connection: reads requests and writes answers until either side ends it.
+class Session {
+ public:
+  Session(boost::asio::ip::tcp::socket socket, SessionContext& context)
+      : stream_(std::move(socket)), context_(context) {}
+
+  boost::asio::awaitable<void> run();
+  /// Answers 503 and closes: there are too many connections.
+  boost::asio::awaitable<void> refuse();
+
+  /// Ends the connection now if no request is under way, else after its answer.
+  void end_when_idle();
+
+ private:
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+  boost::asio::awaitable<bool> await_request();
+  boost::asio::awaitable<boost::beast::error_code> read(Parser& parser);
+  boost::asio::awaitable<bool> answer(Parser& parser);
+  boost::asio::awaitable<Response> dispatch(const Request& request);
+  boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
+  boost::asio::awaitable<void> refuse_unreadable(boost::beast::error_code why);
+
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer buffer_;
+  SessionContext& context_;
+  bool idle_ = true;
+};
+
+}  // namespace calibrd::api

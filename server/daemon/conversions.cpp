@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon/conversions.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace calibrd {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+
+ImageKind image_kind(const std::string& name) {
+  if (name == "none") return ImageKind::none;
+  return name == "color" ? ImageKind::color : ImageKind::infrared;
+}
+
+int place_of(const std::string& joint, const std::vector<std::string>& model_joints) {
+  const auto found = std::find(model_joints.begin(), model_joints.end(), joint);
+  return found == model_joints.end() ? -1 : static_cast<int>(found - model_joints.begin());
+}
+
+int axis_of(const std::string& joint, const RobotConfig& robot,
+            const std::vector<std::string>& model_joints) {
+  const auto configured = robot.joints.find(joint);
+  const bool has_index = configured != robot.joints.end() && configured->second.index >= 0;
+  return has_index ? configured->second.index : place_of(joint, model_joints);
+}
+
+JointMappingEntry mapping_entry(const std::string& joint, const RobotConfig& robot,
+                                const std::vector<std::string>& model_joints) {
+  JointMappingEntry entry;
+  entry.joint = joint;
+  entry.axis = axis_of(joint, robot, model_joints);
+  const auto configured = robot.joints.find(joint);
+  if (configured == robot.joints.end()) return entry;
+  entry.sign = configured->second.sign;
+  entry.scale = configured->second.scale;
+  entry.offset_rad = configured->second.offset_deg * kRadPerDeg;
+  for (const auto& [other, factor] : configured->second.coupling) {
+    auto& coupling = entry.coupling.emplace_back();
+    coupling.axis = axis_of(other, robot, model_joints);
+    coupling.factor = factor;
+  }
+  return entry;
+}
+
+}  // namespace
+
+api::HttpServerSettings http_settings(const Config& config) {
+  api::HttpServerSettings settings;
+  settings.address = config.server.address;
+  settings.port = static_cast<std::uint16_t>(config.server.port);
+  settings.max_connections = config.server.max_connections;
+  return settings;
+}
+
+StateClientSettings link_settings(const RobotConfig& robot, int axis_count) {
+  StateClientSettings settings;
+  settings.host = robot.host;
+  settings.port = robot.port;
+  settings.byte_order =
+      robot.byte_order == "little" ? simple_message::ByteOrder::little : simple_message::ByteOrder::big;
+  settings.group = robot.group;
+  settings.joint_count = axis_count;
+  settings.link.stale_after = robot.joints_stale_after;
+  settings.link.reconnect_after = robot.reconnect_after;
+  return settings;
+}
+
+SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor) {
+  SensorProcessSettings settings;
+  settings.id = id;
+  settings.stream.device = sensor.uri;
+  settings.stream.recording = sensor.oni_file.string();
+  settings.stream.loop = sensor.loop;
+  settings.stream.width = sensor.camera.width;
+  settings.stream.height = sensor.camera.height;
+  settings.stream.fps = sensor.fps;
+  settings.stream.depth_unit_um = sensor.depth_unit_um;
+  settings.stream.image = image_kind(sensor.image);
+  settings.stream.mirror = sensor.mirror;
+  settings.openni_directory = sensor.driver_directory;
+  return settings;
+}
+
+SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
+  return {id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor};
+}
+
+LiveCellSettings cell_settings(const Config& config, const std::string& version) {
+  LiveCellSettings settings;
+  settings.version = version;
+  settings.urdf = config.robot.urdf;
+  settings.search_paths = config.robot.search_paths;
+  settings.base_link = config.robot.base_link;
+  settings.controller_frame = config.robot.controller_frame;
+  settings.gate.stale_after = config.robot.joints_stale_after;
+  settings.gate.settle_time = config.calibration.settle_time;
+  settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
+  settings.watch.max_unverified = config.pose.max_unverified;
+  settings.watch.check_period = config.pose.check_period;
+  settings.jobs.collector.postures = config.calibration.postures;
+  settings.jobs.collector.min_distance_rad = config.calibration.min_posture_distance_deg * kRadPerDeg;
+  settings.jobs.collector.frames_per_posture = config.calibration.frames_per_posture;
+  settings.jobs.collect_timeout = config.calibration.collect_timeout;
+  return settings;
+}
+
+JointMappingConfig mapping_config(const RobotConfig& robot, const std::vector<std::string>& model_joints) {
+  JointMappingConfig mapping;
+  for (const auto& [joint, unused] : robot.joints)
+    if (place_of(joint, model_joints) < 0)
+      mapping.joints.push_back(mapping_entry(joint, robot, model_joints));
+  for (const auto& joint : model_joints) mapping.joints.push_back(mapping_entry(joint, robot, model_joints));
+  return mapping;
+}
+
+}  // namespace calibrd

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "api/http/http_server.hpp"
+#include "core/robot/joint_mapping.hpp"
+#include "core/robot/robot_model.hpp"
+#include "drivers/robot/state_client.hpp"
+#include "drivers/sensor/sensor_settings.hpp"
+#include "server/config/config.hpp"
+#include "server/live_cell/live_cell.hpp"
+
+namespace calibrd {
+
+/// Values in a message of the controller: the protocol always carries ten.
+inline constexpr int kControllerAxes = 10;
+
+// From the configuration to what each part takes.
+api::HttpServerSettings http_settings(const Config& config);
+StateClientSettings link_settings(const RobotConfig& robot, int axis_count);
+SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor);
+SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor);
+LiveCellSettings cell_settings(const Config& config, const std::string& version);
+
+/// Joints that the configuration does not name follow the controller's value at their own place in the model.
+JointMappingConfig mapping_config(const RobotConfig& robot, const std::vector<std::string>& model_joints);
+
+}  // namespace calibrd

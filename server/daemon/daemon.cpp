@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon/daemon.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "api/http/http_server.hpp"
+#include "api/json/calibration_result_json.hpp"
+#include "api/routes/names.hpp"
+#include "api/routes/routes.hpp"
+#include "core/robot/nearest_name.hpp"
+#include "core/robot/robot_model_error.hpp"
+#include "drivers/sensor/sensor_process.hpp"
+#include "server/daemon/conversions.hpp"
+#include "server/daemon/robot_link.hpp"
+#include "server/live_cell/live_cell.hpp"
+#include "server/storage/calibration_store.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr auto kHttpGrace = std::chrono::milliseconds(200);
+
+Status check_controller_frame(const RobotModel& model, const RobotConfig& robot) {
+  if (robot.controller_frame.empty() || model.find_link(robot.controller_frame)) return Done{};
+  std::vector<std::string> links;
+  for (const auto& link : model.links()) links.push_back(link.name);
+  return Error{RobotModelError::unknown_link, "robot.controller_frame '" + robot.controller_frame + "' (" +
+                                                  name_hint(robot.controller_frame, links) + ")"};
+}
+
+Result<RobotModel> load_model(const RobotConfig& robot) {
+  auto model = RobotModel::load(robot.urdf, {robot.search_paths, robot.base_link});
+  if (!model) return model;
+  if (auto status = check_controller_frame(*model, robot); !status) return status.error();
+  return model;
+}
+
+Result<JointMapping> make_mapping(const Config& config, const RobotModel& model) {
+  const auto wanted = mapping_config(config.robot, model.position_names());
+  auto mapping = JointMapping::make(wanted, model.position_names());
+  if (mapping)
+    if (const auto doubt = find_pendant_order(*mapping)) spdlog::warn("robot.joints: {}", doubt->message());
+  return mapping;
+}
+
+Status check_sensors(const Config& config) {
+  for (const auto& [id, sensor] : config.sensors)
+    if (auto status = check(sensor_settings(id, sensor)); !status)
+      return Error{status.error().code, "sensors." + id + ": " + status.error().detail};
+  return Done{};
+}
+
+void log_calibration(const api::CalibrationReport& calibration) {
+  spdlog::info(
+      "calibration {} of {}: {}{}{}", calibration.id, calibration.sensor_id, api::name_of(calibration.status),
+      calibration.result ? std::string(", ") + api::name_of(calibration.result->verdict) : std::string(),
+      calibration.message.empty() ? std::string() : ". " + calibration.message);
+}
+
+void log_access(const api::AccessRecord& record) {
+  const auto level = record.status >= 500 ? spdlog::level::warn : spdlog::level::debug;
+  spdlog::log(level, "{} {} {} {} us", record.method, record.path, record.status, record.duration.count());
+}
+
+/// The link's events with every change of its health logged.
+RobotLinkEvents logged(RobotLinkEvents events) {
+  events.on_health = [inner = std::move(events.on_health),
+                      was_streaming = false](const RobotLinkHealth& health) mutable {
+    const bool streaming = health.state == RobotLinkHealth::State::streaming;
+    if (streaming && !was_streaming) spdlog::info("robot: joints are coming in");
+    if (!streaming) spdlog::warn("robot: {}", health.reason);
+    was_streaming = streaming;
+    inner(health);
+  };
+  return events;
+}
+
+}  // namespace
+
+Status check_config(const Config& config) {
+  const auto model = load_model(config.robot);
+  if (!model) return model.error();
+  if (const auto mapping = make_mapping(config, *model); !mapping) return mapping.error();
+  if (auto status = check(link_settings(config.robot, kControllerAxes)); !status) return status;
+  return check_sensors(config);
+}
+
+/// In the order they are made; they end in the opposite one.
+struct Daemon::Parts {
+  std::unique_ptr<CalibrationStore> store;
+  std::unique_ptr<const RobotModel> model;
+  std::unique_ptr<const VirtualCell> virtual_cell;
+  std::unique_ptr<LiveCell> cell;
+  std::unique_ptr<RobotLink> link;
+  api::Router router;
+  std::unique_ptr<api::HttpServer> http;
+
+  Status make_model(const Config& config) {
+    auto loaded = load_model(config.robot);
+    if (!loaded) return loaded.error();
+    model = std::make_unique<const RobotModel>(*std::move(loaded));
+    virtual_cell = std::make_unique<const VirtualCell>(*model);
+    return Done{};
+  }
+
+  Status make_cell(const Config& config, const std::string& version) {
+    auto mapping = make_mapping(config, *model);
+    if (!mapping) return mapping.error();
+    cell =
+        std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell, *std::move(mapping),
+                                   *store, core_estimator(*model, *virtual_cell), log_calibration);
+    for (const auto& [id, sensor] : config.sensors)
+      if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
+    return Done{};
+  }
+
+  Status make_link(const Config& config) {
+    auto created =
+        RobotLink::create(link_settings(config.robot, kControllerAxes), logged(cell->robot_link().events()));
+    if (!created) return created.error();
+    link = *std::move(created);
+    cell->robot_link().set_health_source([this] { return link->health(); });
+    return Done{};
+  }
+
+  Status make_http(const Config& config) {
+    router = api::make_routes(*cell);
+    auto server = api::HttpServer::start(http_settings(config), router, log_access);
+    if (!server) return server.error();
+    http = *std::move(server);
+    return Done{};
+  }
+
+  Status start_sources(const Config& config) {
+    link->start();
+    for (const auto& [id, sensor] : config.sensors) {
+      auto source = SensorProcess::start(sensor_settings(id, sensor));
+      if (!source) return source.error();
+      cell->start(id, *std::move(source));
+    }
+    return Done{};
+  }
+};
+
+Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::string& version) {
+  std::unique_ptr<Daemon> daemon(new Daemon(std::make_unique<Parts>()));
+  auto& parts = *daemon->parts_;
+  if (auto status = check_sensors(config); !status) return status.error();
+  if (auto status = parts.make_model(config); !status) return status.error();
+  auto store = CalibrationStore::open(config.storage.path);
+  if (!store) return store.error();
+  parts.store = *std::move(store);
+  if (auto status = parts.make_cell(config, version); !status) return status.error();
+  if (auto status = parts.make_link(config); !status) return status.error();
+  if (auto status = parts.make_http(config); !status) return status.error();
+  if (auto status = parts.start_sources(config); !status) return status.error();
+  return daemon;
+}
+
+Daemon::Daemon(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Daemon::~Daemon() { stop(); }
+
+void Daemon::stop() {
+  if (parts_->cell) parts_->cell->request_stop();
+  if (parts_->http) parts_->http->stop(kHttpGrace);
+  if (parts_->link) parts_->link->stop();
+  parts_->http.reset();
+  parts_->cell.reset();
+}
+
+std::uint16_t Daemon::http_port() const { return parts_->http->port(); }
+
+}  // namespace calibrd

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/base/result.hpp"
+#include "server/config/config.hpp"
+
+namespace calibrd {
+
+/// Checks what a configuration points to: robot model, joints, sensors' settings. Opens no port and no store.
+/// The error names the file or key at fault.
+Status check_config(const Config& config);
+
+/// The running daemon: robot link, sensors, store and HTTP server wired together.
+class Daemon {
+ public:
+  /// Runs when it returns. Whether robot and sensors are there shows in the API: they may come and go at any
+  /// time. The error names the file, key or port at fault.
+  static Result<std::unique_ptr<Daemon>> start(const Config& config, const std::string& version);
+  ~Daemon();
+
+  /// Ends everything in good order.
+  void stop();
+
+  std::uint16_t http_port() const;
+
+ private:
+  struct Parts;
+  explicit Daemon(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace calibrd

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "server/live_cell/calibration_jobs.hpp"
+
+namespace calibrd {
+
+/// One calibration under way. Report and flags are guarded by the mutex of CalibrationJobs.
+struct CalibrationJobs::Job {
+  api::CalibrationReport report;
+  LiveSensor* sensor = nullptr;
+  std::optional<Pose> guess;
+  std::shared_ptr<CollectTask> task;
+  Clock::time_point deadline;  ///< of collecting
+  std::atomic<bool> cancelled{false};
+  bool is_ending = false;  ///< its end is being stored
+};
+
+}  // namespace calibrd

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/calibration_jobs.hpp"
+
+#include <array>
+#include <cstdio>
+#include <ctime>
+
+#include "api/problem/api_error.hpp"
+#include "server/live_cell/calibration_job.hpp"
+
+namespace calibrd {
+
+using api::ApiError;
+using api::CalibrationReport;
+using api::JobStatus;
+
+CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
+                                 Log log, JobSettings settings)
+    : store_(store),
+      calibrate_(std::move(calibrate)),
+      publish_(std::move(publish)),
+      log_(std::move(log)),
+      settings_(settings),
+      thread_([this] { run(); }) {}
+
+CalibrationJobs::~CalibrationJobs() {
+  request_stop();
+  thread_.join();
+}
+
+void CalibrationJobs::request_stop() {
+  const std::lock_guard lock(mutex_);
+  is_stopping_ = true;
+  for (const auto& [id, job] : jobs_) {
+    job->cancelled = true;
+    job->task->cancel();
+  }
+  changed_.notify_all();
+}
+
+Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& request, LiveSensor& sensor,
+                                                 const std::optional<Pose>& guess) {
+  const std::lock_guard starting(starting_);
+  const auto before = started_before(request);
+  if (!before) return before.error();
+  if (*before) return **before;
+  if (const auto busy = active(sensor.id()); !busy.empty())
+    return fail(ApiError::calibration_in_progress, busy);
+  const auto job = make_job(request, sensor, guess);
+  if (auto added = store_.add(job->report, request); !added)
+    return fail(ApiError::storage_failed, added.error().message());
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_stopping_) return fail(ApiError::shutting_down);
+    jobs_[job->report.id] = job;
+    job->report.status = JobStatus::collecting;
+    changed_.notify_all();
+  }
+  sensor.feed(job->task);
+  return find(job->report.id);
+}
+
+Result<std::optional<CalibrationReport>> CalibrationJobs::started_before(
+    const api::CalibrationRequest& request) const {
+  if (request.idempotency_key.empty()) return std::optional<CalibrationReport>();
+  const auto start = store_.find_start(request.sensor_id, request.idempotency_key);
+  if (!start) return fail(ApiError::storage_failed, start.error().message());
+  if (!*start) return std::optional<CalibrationReport>();
+  if ((*start)->fingerprint != request.fingerprint)
+    return fail(ApiError::idempotency_conflict, "it started " + (*start)->calibration_id);
+  const auto report = find((*start)->calibration_id);
+  if (!report) return report.error();
+  return std::optional<CalibrationReport>(*report);
+}
+
+CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequest& request,
+                                                      LiveSensor& sensor, const std::optional<Pose>& guess) {
+  auto job = std::make_shared<Job>();
+  auto collector = settings_.collector;
+  collector.postures = request.postures.value_or(collector.postures);
+  job->report.id = new_id();
+  job->report.sensor_id = sensor.id();
+  job->report.created = std::chrono::system_clock::now();
+  job->report.method = request.method;
+  job->report.postures_wanted = collector.postures;
+  job->report.activate = request.activate;
+  job->sensor = &sensor;
+  job->guess = request.guess_T_base_sensor ? request.guess_T_base_sensor : guess;
+  job->deadline = Clock::now() + settings_.collect_timeout;
+  job->task = std::make_shared<CollectTask>(collector, [this] {
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  });
+  return job;
+}
+
+/// Sorts by time, and does not repeat: "20260102T030405-1f2e3d".
+std::string CalibrationJobs::new_id() {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> time{};
+  std::array<char, 64> id{};
+  std::strftime(time.data(), time.size(), "%Y%m%dT%H%M%S", &utc);
+  std::snprintf(id.data(), id.size(), "%s-%06x", time.data(), static_cast<unsigned>(random_() & 0xffffffU));
+  return id.data();
+}
+
+Result<CalibrationReport> CalibrationJobs::find(const std::string& id) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto job = jobs_.find(id); job != jobs_.end()) return report_of(*job->second);
+  }
+  const auto stored = store_.find(id);
+  if (!stored) return fail(ApiError::storage_failed, stored.error().message());
+  if (!*stored) return fail(ApiError::no_such_calibration, id);
+  return **stored;
+}
+
+Result<CalibrationReport> CalibrationJobs::cancel(const std::string& id) {
+  JobPointer job;
+  bool is_computing = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = jobs_.find(id); found != jobs_.end()) job = found->second;
+    is_computing = job && job->report.status == JobStatus::running;
+    if (job) job->cancelled = true;
+  }
+  if (!job) {
+    const auto ended = find(id);
+    return ended ? fail(ApiError::calibration_not_running, id) : ended.error();
+  }
+  job->task->cancel();
+  // A computation sees the flag and ends by itself.
+  if (!is_computing) end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
+  return find(id);
+}
+
+std::string CalibrationJobs::active(const std::string& sensor_id) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, job] : jobs_)
+    if (job->report.sensor_id == sensor_id) return id;
+  return {};
+}
+
+/// What the job is doing; the caller holds mutex_.
+CalibrationReport CalibrationJobs::report_of(const Job& job) const {
+  auto report = job.report;
+  report.postures_seen = job.task->seen();
+  if (report.status != JobStatus::collecting) return report;
+  const double share = static_cast<double>(report.postures_seen) / report.postures_wanted;
+  report.progress = 0.5 * share;
+  report.message =
+      std::to_string(report.postures_seen) + " of " + std::to_string(report.postures_wanted) + " postures";
+  const auto views = job.sensor->report().views;
+  if (job.task->is_complete())
+    report.message += "; waiting for another calibration to be computed";
+  else if (!views.usable)
+    report.message += "; " + views.reason;
+  else if (job.task->is_waiting_for_motion())
+    report.message += "; move the robot to another posture and let it hold still";
+  return report;
+}
+
+}  // namespace calibrd

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "api/service/reports.hpp"
+#include "server/live_cell/live_sensor.hpp"
+#include "server/storage/calibration_store.hpp"
+
+namespace calibrd {
+
+/// core's calibrate(), for one robot.
+using CalibrateFunction =
+    std::function<CalibrationResult(const CameraModel&, std::span<const View>, const CalibrationSettings&)>;
+
+struct JobSettings {
+  CollectorSettings collector;  ///< its postures: where the request names no number
+  Clock::duration collect_timeout = std::chrono::minutes(10);
+};
+
+/// Runs calibrations: collects postures of any number of sensors at a time, computes one at a time on a
+/// thread of its own, stores every outcome, and makes an accepted one the current pose. Safe to call from any
+/// thread. Errors: api::ApiError.
+class CalibrationJobs {
+ public:
+  /// Called for a calibration that has just become the current one. `seen_at`: when its last view was taken.
+  using Publish =
+      std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at)>;
+  using Log = std::function<void(const api::CalibrationReport&)>;
+
+  /// `store` must outlive it. `log` hears of every calibration that has ended.
+  CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish, Log log,
+                  JobSettings settings);
+  ~CalibrationJobs();
+
+  /// `sensor` must outlive the jobs. `guess`: where the request holds none.
+  Result<api::CalibrationReport> start(const api::CalibrationRequest& request, LiveSensor& sensor,
+                                       const std::optional<Pose>& guess);
+  Result<api::CalibrationReport> find(const std::string& id) const;
+  Result<api::CalibrationReport> cancel(const std::string& id);
+  /// Id of the sensor's calibration under way; empty: none.
+  std::string active(const std::string& sensor_id) const;
+
+  /// Cancels everything under way and ends the thread; a computation under way ends at its next look at the
+  /// flag.
+  void request_stop();
+
+ private:
+  struct Job;
+  using JobPointer = std::shared_ptr<Job>;
+
+  std::string new_id();
+  Result<std::optional<api::CalibrationReport>> started_before(const api::CalibrationRequest& request) const;
+  JobPointer make_job(const api::CalibrationRequest& request, LiveSensor& sensor,
+                      const std::optional<Pose>& guess);
+  void run();
+  JobPointer next_ready();
+  std::vector<JobPointer> take_overdue(Clock::time_point now);
+  void compute(const JobPointer& job);
+  CalibrationResult calibrate(const JobPointer& job, std::span<const View> views);
+  void end(const JobPointer& job, api::JobStatus status, std::string message,
+           std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at);
+  void end_overdue(const JobPointer& job);
+  void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
+  bool store_end(api::CalibrationReport& report);
+  api::CalibrationReport report_of(const Job& job) const;
+
+  CalibrationStore& store_;
+  const CalibrateFunction calibrate_;
+  const Publish publish_;
+  const Log log_;
+  const JobSettings settings_;
+
+  std::mutex starting_;  // one start() at a time: two requests with one key start one calibration
+  std::mt19937 random_{std::random_device{}()};  // guarded by starting_
+
+  mutable std::mutex mutex_;  // guards what follows, and every Job's report and phase
+  std::condition_variable changed_;
+  std::map<std::string, JobPointer> jobs_;  // those under way
+  bool is_stopping_ = false;
+
+  std::thread thread_;
+};
+
+}  // namespace calibrd

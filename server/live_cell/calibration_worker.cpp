@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+// The part of CalibrationJobs that runs on its thread, and the end of every job.
+#include <algorithm>
+#include <exception>
+
+#include "server/live_cell/calibration_job.hpp"
+
+namespace calibrd {
+
+using api::CalibrationReport;
+using api::JobStatus;
+
+namespace {
+
+constexpr auto kLongWait = std::chrono::hours(1);
+
+/// Why a calibration without an accepted result has failed, from its reasons.
+std::string failure_message(const CalibrationResult& result) {
+  std::string message =
+      result.verdict == Verdict::uncertain ? "The result is uncertain" : "The result was rejected";
+  for (std::size_t i = 0; i < result.reasons.size(); ++i)
+    message += (i == 0 ? ": " : "; ") + result.reasons[i].text;
+  return message + ".";
+}
+
+Clock::time_point time_of_last(std::span<const View> views) {
+  const std::chrono::duration<double> stamp(views.back().stamp_s);
+  return Clock::time_point(std::chrono::duration_cast<Clock::duration>(stamp));
+}
+
+}  // namespace
+
+void CalibrationJobs::run() {
+  std::unique_lock lock(mutex_);
+  while (!is_stopping_) {
+    const auto overdue = take_overdue(Clock::now());
+    const auto ready = next_ready();
+    if (ready) ready->report.status = JobStatus::running;
+    if (overdue.empty() && !ready) {
+      auto wake = Clock::now() + kLongWait;
+      for (const auto& [id, job] : jobs_)
+        if (job->task->is_open()) wake = std::min(wake, job->deadline);
+      changed_.wait_until(lock, wake);
+      continue;
+    }
+    lock.unlock();
+    for (const auto& job : overdue) end_overdue(job);
+    if (ready) compute(ready);
+    lock.lock();
+  }
+}
+
+/// The oldest job that has its postures; the caller holds mutex_.
+CalibrationJobs::JobPointer CalibrationJobs::next_ready() {
+  JobPointer oldest;
+  for (const auto& [id, job] : jobs_) {
+    if (job->report.status != JobStatus::collecting || job->is_ending || !job->task->is_complete()) continue;
+    if (!oldest || job->report.created < oldest->report.created) oldest = job;
+  }
+  return oldest;
+}
+
+/// Jobs that have not seen their postures in time; the caller holds mutex_.
+std::vector<CalibrationJobs::JobPointer> CalibrationJobs::take_overdue(Clock::time_point now) {
+  std::vector<JobPointer> overdue;
+  for (const auto& [id, job] : jobs_)
+    if (job->report.status == JobStatus::collecting && !job->is_ending && job->task->is_open() &&
+        now >= job->deadline)
+      overdue.push_back(job);
+  return overdue;
+}
+
+void CalibrationJobs::end_overdue(const JobPointer& job) {
+  job->task->cancel();
+  const auto seen = std::to_string(job->task->seen()), wanted = std::to_string(job->report.postures_wanted);
+  auto message = "Only " + seen + " of " + wanted +
+                 " postures within calibration.collect_timeout. Move the robot, or ask for fewer postures.";
+  if (const auto views = job->sensor->report().views; !views.usable)
+    message += " Last: " + views.reason + ".";
+  end(job, JobStatus::failed, std::move(message), std::nullopt, std::nullopt);
+}
+
+void CalibrationJobs::compute(const JobPointer& job) {
+  const auto views = job->task->take_views();
+  const auto seen_at = time_of_last(views);
+  auto result = calibrate(job, views);
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_stopping_) return;  // the store calls it interrupted when it is opened again
+  }
+  if (job->cancelled)
+    end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
+  else
+    end_computed(job, std::move(result), seen_at);
+}
+
+CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<const View> views) {
+  CalibrationSettings settings;
+  settings.method = job->report.method;
+  settings.guess_T_base_sensor = job->guess;
+  settings.cancelled = &job->cancelled;
+  settings.on_progress = [&](double share) {
+    const std::lock_guard lock(mutex_);
+    job->report.progress = 0.5 + 0.5 * std::clamp(share, 0.0, 1.0);
+  };
+  try {
+    return calibrate_(job->sensor->camera(), views, settings);
+  } catch (const std::exception& failure) {
+    CalibrationResult result;
+    result.reasons.push_back(
+        {"internal", std::string("the computation failed unexpectedly: ") + failure.what()});
+    return result;
+  }
+}
+
+void CalibrationJobs::end_computed(const JobPointer& job, CalibrationResult result,
+                                   Clock::time_point seen_at) {
+  const bool accepted = result.verdict == Verdict::accepted && result.T_base_sensor;
+  auto message = accepted ? std::string() : failure_message(result);
+  end(job, accepted ? JobStatus::succeeded : JobStatus::failed, std::move(message), std::move(result),
+      seen_at);
+}
+
+/// Stores the end first: a pose that is not on the disk is not published.
+void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string message,
+                          std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at) {
+  CalibrationReport report;
+  {
+    const std::lock_guard lock(mutex_);
+    if (job->is_ending) return;
+    job->is_ending = true;
+    report = job->report;
+  }
+  report.status = status;
+  report.message = std::move(message);
+  report.result = std::move(result);
+  report.finished = std::chrono::system_clock::now();
+  report.progress = 1;
+  report.postures_seen = job->task->seen();
+  if (store_end(report) && report.current) publish_(report, seen_at);
+  log_(report);
+  const std::lock_guard lock(mutex_);
+  jobs_.erase(report.id);
+}
+
+/// Stores the end, and that it is current now if it is to be. False: it could not be stored.
+bool CalibrationJobs::store_end(CalibrationReport& report) {
+  auto stored = store_.finish(report);
+  const bool activate = report.status == JobStatus::succeeded && report.activate;
+  if (stored && activate) stored = store_.activate(report);
+  report.current = stored && activate;
+  if (!stored) report.message = "The result could not be stored: " + stored.error().message();
+  return stored.has_value();
+}
+
+}  // namespace calibrd

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/collect_task.hpp"
+
+namespace calibrd {
+
+void CollectTask::offer(const View& view) {
+  std::function<void()> tell;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_cancelled_ || collector_.is_complete()) return;
+    collector_.offer(view);
+    if (!collector_.is_complete()) return;
+    tell = std::move(on_complete_);
+    ended_.notify_all();
+  }
+  if (tell) tell();
+}
+
+void CollectTask::interrupt() {
+  const std::lock_guard lock(mutex_);
+  collector_.interrupt();
+}
+
+void CollectTask::cancel() {
+  const std::lock_guard lock(mutex_);
+  is_cancelled_ = true;
+  ended_.notify_all();
+}
+
+bool CollectTask::is_open() const {
+  const std::lock_guard lock(mutex_);
+  return !is_cancelled_ && !collector_.is_complete();
+}
+
+bool CollectTask::is_complete() const {
+  const std::lock_guard lock(mutex_);
+  return collector_.is_complete();
+}
+
+bool CollectTask::is_waiting_for_motion() const {
+  const std::lock_guard lock(mutex_);
+  return collector_.is_waiting_for_motion();
+}
+
+int CollectTask::seen() const {
+  const std::lock_guard lock(mutex_);
+  return collector_.seen();
+}
+
+bool CollectTask::wait_until(Clock::time_point deadline) {
+  std::unique_lock lock(mutex_);
+  ended_.wait_until(lock, deadline, [this] { return is_cancelled_ || collector_.is_complete(); });
+  return collector_.is_complete() && !is_cancelled_;
+}
+
+std::vector<View> CollectTask::take_views() {
+  const std::lock_guard lock(mutex_);
+  return collector_.take_views();
+}
+
+}  // namespace calibrd

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+
+#include "server/live_cell/posture_collector.hpp"
+
+namespace calibrd {
+
+/// Postures being collected from one sensor: fed by the sensor's thread, watched and ended by others.
+/// Safe to call from any thread.
+class CollectTask {
+ public:
+  /// `on_complete` is called once, on the feeding thread.
+  explicit CollectTask(const CollectorSettings& settings, std::function<void()> on_complete = {})
+      : collector_(settings), on_complete_(std::move(on_complete)) {}
+
+  void offer(const View& view);
+  void interrupt();
+  void cancel();
+
+  bool is_open() const;  ///< neither complete nor cancelled: wants more views
+  bool is_complete() const;
+  bool is_waiting_for_motion() const;
+  int seen() const;
+
+  /// Waits for the end. True: complete; false: cancelled, or the deadline has come.
+  bool wait_until(Clock::time_point deadline);
+
+  std::vector<View> take_views();
+
+ private:
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable ended_;
+  PostureCollector collector_;
+  std::function<void()> on_complete_;
+  bool is_cancelled_ = false;
+};
+
+}  // namespace calibrd

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/live_cell.hpp"
+
+#include "api/problem/api_error.hpp"
+#include "server/recording/record.hpp"
+
+namespace calibrd {
+
+using api::ApiError;
+
+LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
+                   JointMapping mapping, CalibrationStore& store, Estimator estimator,
+                   CalibrationJobs::Log log)
+    : settings_(std::move(settings)),
+      store_(store),
+      estimator_(std::move(estimator)),
+      robot_(model, std::move(mapping), settings_.gate, settings_.controller_frame),
+      clouds_(virtual_cell, robot_),
+      jobs_(
+          store, estimator_.calibrate,
+          [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); }, std::move(log),
+          settings_.jobs) {}
+
+LiveCell::~LiveCell() { request_stop(); }
+
+Status LiveCell::add_sensor(const SensorSetup& setup) {
+  auto gate = settings_.gate;
+  gate.latency = setup.latency;
+  auto entry = std::make_unique<Entry>();
+  entry->setup = setup;
+  entry->sensor =
+      std::make_unique<LiveSensor>(LiveSensorSettings{setup.id, setup.camera, gate, settings_.watch}, robot_,
+                                   estimator_.make_check(setup.camera));
+  entries_[setup.id] = std::move(entry);
+  const auto stored = store_.current(setup.id);
+  if (!stored) return stored.error();
+  if (*stored) publish(**stored, std::nullopt);
+  return Done{};
+}
+
+void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {
+  entries_.at(sensor_id)->sensor->start(std::move(source));
+}
+
+void LiveCell::request_stop() {
+  is_stopping_ = true;
+  for (const auto& [id, entry] : entries_) {
+    entry->sensor->request_stop();
+    const std::lock_guard lock(entry->recording);
+    if (entry->recording_task) entry->recording_task->cancel();
+  }
+  jobs_.request_stop();
+}
+
+void LiveCell::publish(const api::CalibrationReport& calibration, std::optional<Clock::time_point> seen_at) {
+  const auto entry = entries_.find(calibration.sensor_id);
+  if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
+  entry->second->sensor->set_pose(
+      {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, seen_at);
+}
+
+Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
+  const auto entry = entries_.find(sensor_id);
+  if (entry == entries_.end()) return fail(ApiError::no_such_sensor, std::string(sensor_id));
+  return entry->second.get();
+}
+
+/// The last pose is a better start than the configured guess: sensors are knocked by less than guesses are
+/// wrong.
+std::optional<Pose> LiveCell::guess_for(const Entry& entry) const {
+  const auto pose = entry.sensor->pose();
+  return pose.known ? pose.known->result.T_base_sensor : entry.setup.guess_T_base_sensor;
+}
+
+api::SensorReport LiveCell::report_of(const Entry& entry) const {
+  auto report = entry.sensor->report();
+  report.job = jobs_.active(report.id);
+  return report;
+}
+
+api::CellReport LiveCell::cell() const {
+  return {settings_.version, Clock::now() - began_, robot(), sensors()};
+}
+
+std::vector<api::SensorReport> LiveCell::sensors() const {
+  std::vector<api::SensorReport> all;
+  for (const auto& [id, entry] : entries_) all.push_back(report_of(*entry));
+  return all;
+}
+
+Result<api::SensorReport> LiveCell::sensor(std::string_view id) const {
+  const auto entry = find(id);
+  if (!entry) return entry.error();
+  return report_of(**entry);
+}
+
+Result<api::PoseReport> LiveCell::pose(std::string_view sensor_id) const {
+  const auto entry = find(sensor_id);
+  if (!entry) return entry.error();
+  auto report = (*entry)->sensor->pose();
+  report.job = jobs_.active(report.sensor_id);
+  return report;
+}
+
+Result<api::CalibrationReport> LiveCell::start_calibration(const api::CalibrationRequest& request) {
+  const auto entry = find(request.sensor_id);
+  if (!entry) return entry.error();
+  return jobs_.start(request, *(*entry)->sensor, guess_for(**entry));
+}
+
+Result<api::CalibrationReport> LiveCell::calibration(std::string_view id) const {
+  return jobs_.find(std::string(id));
+}
+
+Result<api::CalibrationReport> LiveCell::cancel_calibration(std::string_view id) {
+  return jobs_.cancel(std::string(id));
+}
+
+Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view id) {
+  const auto found = jobs_.find(std::string(id));
+  if (!found) return found;
+  if (!found->finished) return fail(ApiError::calibration_not_finished, found->id);
+  if (found->status != api::JobStatus::succeeded) return fail(ApiError::not_activatable, found->id);
+  const auto entry = find(found->sensor_id);
+  if (!entry) return entry.error();
+  if (auto activated = store_.activate(*found); !activated)
+    return fail(ApiError::storage_failed, activated.error().message());
+  publish(*found, std::nullopt);
+  return jobs_.find(std::string(id));
+}
+
+Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const {
+  if (const auto entry = find(query.sensor_id); !entry) return entry.error();
+  auto page = store_.history(query);
+  if (!page) return fail(ApiError::storage_failed, page.error().message());
+  for (auto& calibration : page->calibrations)
+    if (!calibration.finished)
+      if (auto live = jobs_.find(calibration.id)) calibration = *std::move(live);
+  return page;
+}
+
+Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequest& request) {
+  auto collector = settings_.jobs.collector;
+  collector.postures = request.postures;
+  collector.frames_per_posture = 1;  // a recording holds what the sensor delivered
+  const auto task = std::make_shared<CollectTask>(collector);
+  {
+    const std::lock_guard lock(entry.recording);
+    if (is_stopping_) return fail(ApiError::shutting_down);
+    if (entry.recording_task) return fail(ApiError::capture_in_progress, entry.setup.id);
+    entry.recording_task = task;
+  }
+  entry.sensor->feed(task);
+  const bool complete =
+      task->wait_until(Clock::now() + std::chrono::duration_cast<Clock::duration>(request.timeout));
+  task->cancel();
+  {
+    const std::lock_guard lock(entry.recording);
+    entry.recording_task.reset();
+  }
+  if (complete) return task->take_views();
+  if (is_stopping_) return fail(ApiError::shutting_down);
+  const auto views = entry.sensor->report().views;
+  return fail(ApiError::postures_not_seen, std::to_string(task->seen()) + " of " +
+                                               std::to_string(request.postures) + " postures" +
+                                               (views.usable ? "" : "; last frame: " + views.reason));
+}
+
+Result<api::CaptureArchive> LiveCell::record_capture(const api::CaptureRequest& request) {
+  const auto entry = find(request.sensor_id);
+  if (!entry) return entry.error();
+  auto views = collect(**entry, request);
+  if (!views) return views.error();
+  Capture capture;
+  capture.note = request.note;
+  capture.urdf = settings_.urdf;
+  capture.base_link = settings_.base_link;
+  capture.joint_names = robot_.model().position_names();
+  capture.sensor_id = request.sensor_id;
+  capture.camera = (*entry)->setup.camera;
+  capture.views = *std::move(views);
+  return archive_capture(capture, settings_.search_paths);
+}
+
+Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {
+  const auto entry = find(request.sensor_id);
+  if (!entry) return entry.error();
+  return clouds_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
+}
+
+Estimator core_estimator(const RobotModel& model, const VirtualCell& cell) {
+  Estimator estimator;
+  estimator.calibrate = [&model](const CameraModel& camera, std::span<const View> views,
+                                 const CalibrationSettings& settings) {
+    return calibrate(model, camera, views, settings);
+  };
+  estimator.make_check = [&cell](const CameraModel& camera) -> CheckFunction {
+    return [camera, own = std::make_shared<VirtualCell>(cell)](const View& view, const Pose& T_base_sensor,
+                                                               const DepthCorrection& correction) {
+      return check_pose(*own, camera, view, T_base_sensor, correction);
+    };
+  };
+  return estimator;
+}
+
+}  // namespace calibrd

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "api/service/cell_service.hpp"
+#include "server/live_cell/calibration_jobs.hpp"
+#include "server/live_cell/cloud_maker.hpp"
+#include "server/live_cell/live_robot.hpp"
+#include "server/live_cell/live_sensor.hpp"
+#include "server/storage/calibration_store.hpp"
+
+namespace calibrd {
+
+/// What the estimator gives the cell; core's calibrate() and check_pose(), unless a test puts others there.
+struct Estimator {
+  CalibrateFunction calibrate;
+  std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
+};
+
+struct LiveCellSettings {
+  std::string version;
+  std::filesystem::path urdf;
+  std::vector<std::filesystem::path> search_paths;
+  std::string base_link;  ///< as configured; empty: the URDF's root
+  std::string controller_frame;
+  ViewGateSettings gate;  ///< but for the latency, which is each sensor's
+  PoseWatchSettings watch;
+  JobSettings jobs;
+};
+
+struct SensorSetup {
+  std::string id;
+  CameraModel camera;
+  Clock::duration latency{0};
+  std::optional<Pose> guess_T_base_sensor;
+};
+
+/// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.
+/// add_sensor() and start() from one thread, before anything else; the rest from any.
+class LiveCell : public api::CellService {
+ public:
+  /// `model` and `store` must outlive it; `virtual_cell` is copied. `log`: every calibration that has ended.
+  LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
+           JointMapping mapping, CalibrationStore& store, Estimator estimator, CalibrationJobs::Log log);
+  ~LiveCell() override;
+
+  LiveRobot& robot_link() { return robot_; }
+
+  /// Restores the sensor's stored pose. Error: StorageError.
+  Status add_sensor(const SensorSetup& setup);
+  /// Begins to read frames.
+  void start(const std::string& sensor_id, std::unique_ptr<DepthSource> source);
+
+  /// Makes everything under way let go; nothing waits any longer than it takes to look up.
+  void request_stop();
+
+  api::CellReport cell() const override;
+  std::vector<api::SensorReport> sensors() const override;
+  Result<api::SensorReport> sensor(std::string_view id) const override;
+  Result<api::PoseReport> pose(std::string_view sensor_id) const override;
+  api::RobotReport robot() const override { return robot_.report(); }
+  Result<api::CalibrationReport> start_calibration(const api::CalibrationRequest& request) override;
+  Result<api::CalibrationReport> calibration(std::string_view id) const override;
+  Result<api::CalibrationReport> cancel_calibration(std::string_view id) override;
+  Result<api::CalibrationReport> activate_calibration(std::string_view id) override;
+  Result<api::HistoryPage> history(const api::HistoryQuery& query) const override;
+  Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
+  Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
+
+ private:
+  struct Entry {
+    SensorSetup setup;
+    std::unique_ptr<LiveSensor> sensor;
+    std::mutex recording;  ///< guards recording_task
+    std::shared_ptr<CollectTask> recording_task;
+  };
+
+  Result<Entry*> find(std::string_view sensor_id) const;
+  std::optional<Pose> guess_for(const Entry& entry) const;
+  void publish(const api::CalibrationReport& calibration, std::optional<Clock::time_point> seen_at);
+  Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
+  api::SensorReport report_of(const Entry& entry) const;
+
+  const LiveCellSettings settings_;
+  const Clock::time_point began_ = Clock::now();
+  CalibrationStore& store_;
+  const Estimator estimator_;
+  std::atomic<bool> is_stopping_{false};
+  LiveRobot robot_;
+  mutable CloudMaker clouds_;
+  std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
+  CalibrationJobs jobs_;                                                // last: its thread uses the others
+};
+
+/// core's estimator for this robot. The returned functions refer to `model` and `cell`.
+Estimator core_estimator(const RobotModel& model, const VirtualCell& cell);
+
+}  // namespace calibrd

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/live_sensor.hpp"
+
+#include <algorithm>
+
+namespace calibrd {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kFramePatience = 100ms;
+constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
+constexpr std::size_t kRateFrames = 60;
+constexpr auto kRateWindow = 2s;
+
+const char* name_of(SensorHealth::State state) {
+  switch (state) {
+    case SensorHealth::State::starting:
+      return "starting";
+    case SensorHealth::State::streaming:
+      return "streaming";
+    case SensorHealth::State::lost:
+      return "lost";
+  }
+  return "lost";
+}
+
+double seconds_of(Clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+}  // namespace
+
+LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check)
+    : settings_(std::move(settings)),
+      robot_(robot),
+      check_(std::move(check)),
+      gate_(settings_.gate),
+      watch_(settings_.watch) {}
+
+LiveSensor::~LiveSensor() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveSensor::start(std::unique_ptr<DepthSource> source) {
+  source_ = std::move(source);
+  thread_ = std::thread([this] { run(); });
+}
+
+void LiveSensor::run() {
+  auto* source = source_.get();
+  while (!is_stopping_) {
+    if (auto frame = source->next(pending_ ? kJointsPatience : kFramePatience)) take_up(*std::move(frame));
+    if (pending_) settle();
+  }
+  std::unique_lock lock(mutex_);
+  const auto ended = std::move(source_);
+  lock.unlock();  // its destructor may take a moment
+}
+
+void LiveSensor::take_up(DepthFrame frame) {
+  if (pending_) finish({FrameVerdict::awaiting_joints, std::nullopt});
+  {
+    const std::lock_guard lock(mutex_);
+    arrivals_.push_back(frame.stamp);
+    if (arrivals_.size() > kRateFrames) arrivals_.pop_front();
+  }
+  if (!has_size_of_camera(frame)) return note(FrameVerdict::wrong_size);
+  if (const auto verdict = gate_.enter(frame.sequence, frame.stamp); verdict != FrameVerdict::usable)
+    return note(verdict);
+  pending_ = std::make_unique<Sighting>();
+  pending_->view.depth = std::move(frame.depth);
+  pending_->view.image = std::move(frame.image);
+  pending_->view.stamp_s = seconds_of(frame.stamp);
+  pending_->stamp = frame.stamp;
+}
+
+bool LiveSensor::has_size_of_camera(const DepthFrame& frame) const {
+  const auto& camera = settings_.camera;
+  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const auto fits = [&](int width, int height, std::size_t count) {
+    return width == camera.width && height == camera.height && count == pixels;
+  };
+  return fits(frame.depth.width, frame.depth.height, frame.depth.raw.size()) &&
+         (!frame.image || fits(frame.image->width, frame.image->height, frame.image->pixels.size()));
+}
+
+void LiveSensor::settle() {
+  auto decision =
+      robot_.read_joints([this](const JointHistory& joints) { return gate_.judge(joints, Clock::now()); });
+  if (decision.verdict != FrameVerdict::awaiting_joints) finish(std::move(decision));
+}
+
+void LiveSensor::finish(FrameDecision decision) {
+  if (decision.positions_rad) pending_->view.joint_positions_rad = *std::move(decision.positions_rad);
+  const std::shared_ptr<const Sighting> sighting = std::move(pending_);
+  note(decision.verdict);
+  {
+    const std::lock_guard lock(mutex_);
+    newest_ = sighting;
+  }
+  const bool usable = decision.verdict == FrameVerdict::usable;
+  serve_tasks(sighting->view, usable);
+  if (usable) check(sighting->view);
+}
+
+void LiveSensor::serve_tasks(const View& view, bool usable) {
+  std::vector<std::shared_ptr<CollectTask>> tasks;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(tasks_, [](const auto& task) { return !task->is_open(); });
+    tasks = tasks_;
+  }
+  for (const auto& task : tasks) usable ? task->offer(view) : task->interrupt();
+}
+
+void LiveSensor::check(const View& view) {
+  std::unique_lock lock(mutex_);
+  if (!known_ || !watch_.is_check_due(Clock::now())) return;
+  const auto number = pose_number_;
+  const auto pose = *known_->result.T_base_sensor;
+  const auto correction = known_->result.depth_correction;
+  lock.unlock();
+  const auto checked = check_(view, pose, correction);
+  lock.lock();
+  if (number == pose_number_) watch_.on_check(checked, Clock::now());
+}
+
+void LiveSensor::note(FrameVerdict verdict) {
+  const std::lock_guard lock(mutex_);
+  verdict_ = verdict;
+  ++counts_[static_cast<std::size_t>(verdict)];
+}
+
+void LiveSensor::set_pose(api::PoseReport::Known known, std::optional<Clock::time_point> seen_at) {
+  const std::lock_guard lock(mutex_);
+  known_ = std::move(known);
+  ++pose_number_;
+  seen_at ? watch_.set_fresh(*seen_at) : watch_.set_stored();
+}
+
+void LiveSensor::feed(std::shared_ptr<CollectTask> task) {
+  const std::lock_guard lock(mutex_);
+  tasks_.push_back(std::move(task));
+}
+
+std::shared_ptr<const Sighting> LiveSensor::newest() const {
+  const std::lock_guard lock(mutex_);
+  return newest_;
+}
+
+api::PoseReport LiveSensor::pose() const {
+  const auto now = Clock::now();
+  const std::lock_guard lock(mutex_);
+  api::PoseReport report;
+  report.sensor_id = settings_.id;
+  report.base_frame = robot_.model().base_link();
+  report.sensor_frame = settings_.id + "_optical";
+  report.state = watch_.state();
+  report.valid = known_ && watch_.is_valid(now);
+  report.reason = watch_.reason(now);
+  report.known = known_;
+  report.last_check = watch_.last_check(now);
+  report.passed_check_age = watch_.passed_check_age(now);
+  report.max_unverified = settings_.watch.max_unverified;
+  return report;
+}
+
+api::SensorReport LiveSensor::report() const {
+  const auto now = Clock::now();
+  const std::lock_guard lock(mutex_);
+  SensorHealth health;
+  if (source_) health = source_->health();
+  api::SensorReport report;
+  report.id = settings_.id;
+  report.health = name_of(health.state);
+  report.reason = health.reason;
+  report.device = health.device;
+  report.notice = health.notice;
+  report.frames = health.frames;
+  report.frames_lost = health.frames_lost;
+  report.restarts = health.restarts;
+  report.frame_rate_hz = frame_rate_hz(now);
+  if (!arrivals_.empty()) report.frame_age = now - arrivals_.back();
+  report.camera = settings_.camera;
+  report.has_image = newest_ && newest_->view.image;
+  report.views.usable = verdict_ == FrameVerdict::usable;
+  report.views.code = name_of(verdict_);
+  report.views.reason = reason_of(verdict_);
+  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)];
+  for (std::size_t i = 1; i < kFrameVerdicts; ++i)
+    if (counts_[i] > 0) report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
+  report.pose_state = watch_.state();
+  report.pose_valid = known_ && watch_.is_valid(now);
+  return report;
+}
+
+double LiveSensor::frame_rate_hz(Clock::time_point now) const {
+  const auto first = std::find_if(arrivals_.begin(), arrivals_.end(),
+                                  [&](Clock::time_point arrival) { return now - arrival < kRateWindow; });
+  if (std::distance(first, arrivals_.end()) < 2) return 0;
+  const std::chrono::duration<double> span = arrivals_.back() - *first;
+  return span.count() > 0 ? static_cast<double>(std::distance(first, arrivals_.end()) - 1) / span.count() : 0;
+}
+
+}  // namespace calibrd

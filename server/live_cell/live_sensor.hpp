@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "api/service/reports.hpp"
+#include "core/calibration/check_pose.hpp"
+#include "drivers/sensor/depth_source.hpp"
+#include "server/live_cell/collect_task.hpp"
+#include "server/live_cell/live_robot.hpp"
+#include "server/live_cell/pose_watch.hpp"
+#include "server/live_cell/view_gate.hpp"
+
+namespace calibrd {
+
+/// Compares a view with what a pose predicts. Called on the sensor's thread only.
+using CheckFunction = std::function<PoseCheck(const View&, const Pose&, const DepthCorrection&)>;
+
+struct LiveSensorSettings {
+  std::string id;
+  CameraModel camera;
+  ViewGateSettings gate;
+  PoseWatchSettings watch;
+};
+
+/// One frame and what is known of the robot at its time.
+struct Sighting {
+  View view;  ///< joint_positions_rad empty when the joints of the frame's time are not known
+  Clock::time_point stamp;
+};
+
+/// One sensor: a thread that reads its frames, decides which become views, feeds those who collect postures,
+/// and keeps checking the current pose. Safe to call from any thread.
+class LiveSensor {
+ public:
+  /// `robot` must outlive it.
+  LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check);
+  ~LiveSensor();
+
+  void start(std::unique_ptr<DepthSource> source);
+  /// Returns at once; the thread, and with it the source, ends soon after.
+  void request_stop() { is_stopping_ = true; }
+
+  const std::string& id() const { return settings_.id; }
+  const CameraModel& camera() const { return settings_.camera; }
+
+  /// The pose being served. `seen_at`: when the views were taken that it comes from; nothing for a stored
+  /// pose, which is unverified until a check agrees.
+  void set_pose(api::PoseReport::Known known, std::optional<Clock::time_point> seen_at);
+
+  /// Feeds the task with views until it is complete or cancelled.
+  void feed(std::shared_ptr<CollectTask> task);
+
+  /// The newest frame; nothing before the first.
+  std::shared_ptr<const Sighting> newest() const;
+
+  api::PoseReport pose() const;
+  api::SensorReport report() const;
+
+ private:
+  void run();
+  void take_up(DepthFrame frame);
+  bool has_size_of_camera(const DepthFrame& frame) const;
+  void settle();
+  void finish(FrameDecision decision);
+  void serve_tasks(const View& view, bool usable);
+  void check(const View& view);
+  void note(FrameVerdict verdict);
+  double frame_rate_hz(Clock::time_point now) const;
+
+  const LiveSensorSettings settings_;
+  LiveRobot& robot_;
+  const CheckFunction check_;
+  std::atomic<bool> is_stopping_{false};
+
+  // The thread's own.
+  ViewGate gate_;
+  std::unique_ptr<Sighting> pending_;  // entered, its joints not all there
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::unique_ptr<DepthSource> source_;
+  std::shared_ptr<const Sighting> newest_;
+  std::deque<Clock::time_point> arrivals_;
+  FrameVerdict verdict_ = FrameVerdict::no_joints;
+  std::array<std::uint64_t, kFrameVerdicts> counts_{};
+  PoseWatch watch_;
+  std::optional<api::PoseReport::Known> known_;
+  std::uint64_t pose_number_ = 0;  // counts set_pose()
+  std::vector<std::shared_ptr<CollectTask>> tasks_;
+
+  std::thread thread_;
+};
+
+}  // namespace calibrd

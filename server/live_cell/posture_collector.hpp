@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "core/calibration/view.hpp"
+
+namespace calibrd {
+
+struct CollectorSettings {
+  int postures = 5;
+  double min_distance_rad = 0.17;  ///< another posture: some joint differs by this much
+  int frames_per_posture = 1;
+};
+
+/// Collects views of different postures, several frames of each. Without I/O; not thread-safe.
+class PostureCollector {
+ public:
+  explicit PostureCollector(const CollectorSettings& settings) : settings_(settings) {}
+
+  /// Takes a view of the robot holding still; copies it when it is of use.
+  void offer(const View& view);
+  /// The robot has moved: frames of a posture that is not complete yet are dropped.
+  void interrupt() { frames_.clear(); }
+
+  bool is_complete() const { return seen() >= settings_.postures; }
+  int seen() const { return static_cast<int>(views_.size()); }
+  /// The last view offered was of a posture already seen.
+  bool is_waiting_for_motion() const { return is_waiting_for_motion_; }
+
+  /// One view for each posture, averaged.
+  std::vector<View> take_views() { return std::move(views_); }
+
+ private:
+  bool is_new(const std::vector<double>& positions) const;
+
+  CollectorSettings settings_;
+  std::vector<View> views_;
+  std::vector<View> frames_;  // of the posture being seen
+  bool is_waiting_for_motion_ = false;
+};
+
+/// Largest difference of any one joint, rad. The sizes must be the same.
+double posture_distance(const std::vector<double>& a, const std::vector<double>& b);
+
+}  // namespace calibrd

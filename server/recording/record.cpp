@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/record.hpp"
+
+#include <stdlib.h>
+
+#include <array>
+#include <ctime>
+
+#include "api/problem/api_error.hpp"
+#include "server/recording/pack_robot.hpp"
+#include "server/recording/tar.hpp"
+
+namespace calibrd {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own below the system's temporary one, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code failure;
+    auto name = (fs::temp_directory_path(failure) / "calibrd-capture.XXXXXX").string();
+    if (!failure && mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string utc_stamp() {
+  const auto now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
+  return text.data();
+}
+
+Error translated(const Error& error) { return fail(api::ApiError::capture_failed, error.message()); }
+
+}  // namespace
+
+Result<api::CaptureArchive> archive_capture(const Capture& capture, std::span<const fs::path> search_paths) {
+  const TemporaryFolder temporary;
+  if (temporary.path().empty()) return fail(api::ApiError::capture_failed, "no temporary folder can be made");
+  const auto name = capture.sensor_id + "-" + utc_stamp();
+  const auto folder = temporary.path() / name;
+  if (auto written = write_capture(folder, capture, "robot.urdf"); !written)
+    return translated(written.error());
+  if (auto packed = pack_robot(capture.urdf, search_paths, folder); !packed)
+    return translated(packed.error());
+  auto tar = tar_of_folder(folder, name);
+  if (!tar) return translated(tar.error());
+  return api::CaptureArchive{name + ".tar", *std::move(tar)};
+}
+
+}  // namespace calibrd

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "api/service/reports.hpp"
+#include "core/base/result.hpp"
+#include "server/storage/sqlite.hpp"
+
+namespace calibrd {
+
+/// The calibration that was started with an Idempotency-Key.
+struct KeyedStart {
+  std::string calibration_id;
+  std::string fingerprint;
+};
+
+/// Every calibration ever made, in an SQLite file. Rows are only ever added: the schema refuses to change or
+/// delete one. A call that returns Done has reached the disk. Safe to call from any thread; calls wait for
+/// each other and for the disk. Errors: StorageError.
+class CalibrationStore {
+ public:
+  /// Opens or makes the store; its folder is made when absent. Calibrations that had not ended when the last
+  /// daemon did are recorded as failed.
+  static Result<std::unique_ptr<CalibrationStore>> open(const std::filesystem::path& file);
+
+  /// Records that a calibration was asked for.
+  Status add(const api::CalibrationReport& calibration, const api::CalibrationRequest& request);
+
+  /// Records how it ended; once for each calibration.
+  Status finish(const api::CalibrationReport& calibration);
+
+  /// Makes a stored calibration the current one of its sensor.
+  Status activate(const api::CalibrationReport& calibration);
+
+  Result<std::optional<api::CalibrationReport>> find(const std::string& id);
+  Result<std::optional<api::CalibrationReport>> current(const std::string& sensor_id);
+  Result<api::HistoryPage> history(const api::HistoryQuery& query);
+  Result<std::optional<KeyedStart>> find_start(const std::string& sensor_id,
+                                               const std::string& idempotency_key);
+
+ private:
+  explicit CalibrationStore(Database database) : database_(std::move(database)) {}
+  Status prepare_schema();
+  Status end_interrupted();
+  Result<std::optional<api::CalibrationReport>> find_where(const std::string& condition,
+                                                           const std::string& value);
+
+  std::mutex mutex_;
+  Database database_;  // guarded by mutex_
+};
+
+}  // namespace calibrd

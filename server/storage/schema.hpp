@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace calibrd {
+
+/// Kept in the file's user_version. Raise it with every change, and bring older files up to date in
+/// prepare_schema().
+inline constexpr int kSchemaVersion = 1;
+
+inline constexpr const char* kSchema = R"sql(
+CREATE TABLE calibrations (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  sensor_id TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  method TEXT NOT NULL,
+  postures INTEGER NOT NULL,
+  activate INTEGER NOT NULL,
+  idempotency_key TEXT,
+  fingerprint TEXT NOT NULL
+);
+CREATE UNIQUE INDEX calibrations_by_key ON calibrations (sensor_id, idempotency_key) WHERE idempotency_key IS NOT NULL;
+CREATE INDEX calibrations_by_sensor ON calibrations (sensor_id, number);
+
+CREATE TABLE results (
+  calibration_id TEXT PRIMARY KEY REFERENCES calibrations (id),
+  finished_ms INTEGER NOT NULL,
+  status TEXT NOT NULL,
+  message TEXT NOT NULL,
+  postures_seen INTEGER NOT NULL,
+  result TEXT
+);
+
+CREATE TABLE activations (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  sensor_id TEXT NOT NULL,
+  calibration_id TEXT NOT NULL REFERENCES calibrations (id),
+  activated_ms INTEGER NOT NULL
+);
+CREATE INDEX activations_by_sensor ON activations (sensor_id, number);
+
+CREATE TRIGGER calibrations_stay BEFORE UPDATE ON calibrations BEGIN SELECT RAISE(ABORT, 'calibrations are kept'); END;
+CREATE TRIGGER calibrations_remain BEFORE DELETE ON calibrations BEGIN SELECT RAISE(ABORT, 'calibrations are kept'); END;
+CREATE TRIGGER results_stay BEFORE UPDATE ON results BEGIN SELECT RAISE(ABORT, 'results are kept'); END;
+CREATE TRIGGER results_remain BEFORE DELETE ON results BEGIN SELECT RAISE(ABORT, 'results are kept'); END;
+CREATE TRIGGER activations_stay BEFORE UPDATE ON activations BEGIN SELECT RAISE(ABORT, 'activations are kept'); END;
+CREATE TRIGGER activations_remain BEFORE DELETE ON activations BEGIN SELECT RAISE(ABORT, 'activations are kept'); END;
+)sql";
+
+}  // namespace calibrd

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/storage/storage_error.hpp"
+
+#include <string>
+
+namespace calibrd {
+namespace {
+
+const char* text(StorageError code) {
+  switch (code) {
+    case StorageError::cannot_open:
+      return "the calibration store cannot be opened; set storage.path to a place this user may write to";
+    case StorageError::not_a_store:
+      return "not a calibration store, or a damaged one; move the file away and restore a backup, or start "
+             "with none";
+    case StorageError::newer_schema:
+      return "the store was written by a newer calibrd; run that version, or set another storage.path";
+    case StorageError::cannot_read:
+      return "the calibration store cannot be read; check the disk";
+    case StorageError::cannot_write:
+      return "the calibration store cannot be written; check free space and permissions of storage.path";
+  }
+  return "unknown storage error";
+}
+
+class Category final : public std::error_category {
+ public:
+  const char* name() const noexcept override { return "storage"; }
+  std::string message(int code) const override { return text(static_cast<StorageError>(code)); }
+};
+
+}  // namespace
+
+const std::error_category& storage_category() {
+  static const Category category;
+  return category;
+}
+
+std::error_code make_error_code(StorageError code) { return {static_cast<int>(code), storage_category()}; }
+
+}  // namespace calibrd

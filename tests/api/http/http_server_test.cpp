@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "api/http/http_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <future>
+
+#include "api/http/http_server_error.hpp"
+#include "api/routes/responses.hpp"
+#include "api/routes/routes.hpp"
+#include "tests/api/fake_cell.hpp"
+
+namespace calibrd::api {
+namespace {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+using namespace std::chrono_literals;
+
+/// A client that speaks the real bytes, blocking, with a deadline from the socket.
+class Client {
+ public:
+  explicit Client(std::uint16_t port) : socket_(io_) {
+    socket_.connect({asio::ip::make_address("127.0.0.1"), port});
+    const timeval deadline{10, 0};
+    setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof deadline);
+  }
+  void send(std::string_view bytes) { asio::write(socket_, asio::buffer(bytes)); }
+  http::response<http::string_body> receive(bool head = false) {
+    http::response_parser<http::string_body> parser;
+    parser.body_limit(boost::none);
+    parser.skip(head);
+    http::read(socket_, buffer_, parser);
+    return parser.release();
+  }
+  http::response<http::string_body> get(const std::string& target) {
+    send("GET " + target + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    return receive();
+  }
+  bool is_closed() {
+    char byte = 0;
+    boost::system::error_code failure;
+    socket_.read_some(asio::buffer(&byte, 1), failure);
+    return failure == asio::error::eof || failure == asio::error::connection_reset;
+  }
+
+ private:
+  asio::io_context io_;
+  asio::ip::tcp::socket socket_;
+  boost::beast::flat_buffer buffer_;
+};
+
+class HttpServerTest : public ::testing::Test {
+ protected:
+  void start(HttpServerSettings settings = {}) {
+    settings.port = 0;
+    auto started =
+        HttpServer::start(settings, router_, [this](const AccessRecord& record) { log_.push_back(record); });
+    ASSERT_TRUE(started) << started.error().message();
+    server_ = *std::move(started);
+  }
+
+  FakeCell cell_;
+  Router router_ = make_routes(cell_);
+  std::vector<AccessRecord> log_;
+  std::unique_ptr<HttpServer> server_;
+};
+
+TEST_F(HttpServerTest, ServesManyRequestsOnOneConnection) {
+  start();
+  Client client(server_->port());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(client.get("/livez").result_int(), 200U);
+  const auto pose = client.get("/api/v1/sensors/kinect2/pose");
+  EXPECT_EQ(pose.result_int(), 200U);
+  EXPECT_EQ(pose[http::field::content_type], "application/json");
+  server_.reset();
+  ASSERT_EQ(log_.size(), 4U);
+  EXPECT_EQ(log_[3].path, "/api/v1/sensors/kinect2/pose");
+}
+
+TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
+  start();
+  Client client(server_->port());
+  client.send("GET /livez HTTP/1.1\r\n\r\nGET /nothing HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(client.receive().result_int(), 200U);
+  EXPECT_EQ(client.receive().result_int(), 404U);
+}
+
+TEST_F(HttpServerTest, HeadHasLengthAndNoBody) {
+  start();
+  Client client(server_->port());
+  const auto length = client.get("/livez").body().size();
+  client.send("HEAD /livez HTTP/1.1\r\n\r\n");
+  const auto head = client.receive(true);
+  EXPECT_EQ(head[http::field::content_length], std::to_string(length));
+  EXPECT_EQ(client.get("/livez").result_int(), 200U);
+}
+
+TEST_F(HttpServerTest, SameEtagIs304WithoutBody) {
+  start();
+  cell_.make_calibrated();
+  Client client(server_->port());
+  const auto tag = std::string(client.get("/api/v1/sensors/kinect2/pose")[http::field::etag]);
+  client.send("GET /api/v1/sensors/kinect2/pose HTTP/1.1\r\nIf-None-Match: " + tag + "\r\n\r\n");
+  EXPECT_EQ(client.receive().result_int(), 304U);
+  EXPECT_EQ(client.get("/livez").result_int(), 200U);
+}
+
+TEST_F(HttpServerTest, QuickAnswersDoNotWaitForSlowOnes) {
+  std::promise<void> release;
+  cell_.on_capture = [&](const CaptureRequest&) -> Result<CaptureArchive> {
+    release.get_future().wait();
+    return CaptureArchive{"a.tar", "x"};
+  };
+  start();
+  Client slow(server_->port()), quick(server_->port());
+  slow.send("POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  EXPECT_EQ(quick.get("/api/v1/sensors/kinect2/pose").result_int(), 200U);
+  release.set_value();
+  EXPECT_EQ(slow.receive().result_int(), 200U);
+}
+
+TEST_F(HttpServerTest, RubbishIsRefusedAndTheConnectionClosed) {
+  start();
+  for (const auto* rubbish :
+       {"\x16\x03\x01\x02\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/1.1\r\nbad header\r\n\r\n"}) {
+    Client client(server_->port());
+    client.send(rubbish);
+    EXPECT_EQ(client.receive().result_int(), 400U) << rubbish;
+    EXPECT_TRUE(client.is_closed());
+  }
+}
+
+TEST_F(HttpServerTest, TooLargeHeaderAndBodyAreRefused) {
+  start();
+  Client header(server_->port());
+  header.send("GET /livez HTTP/1.1\r\nX: " + std::string(9000, 'x') + "\r\n\r\n");
+  EXPECT_EQ(header.receive().result_int(), 431U);
+  Client body(server_->port());
+  body.send("POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Length: 70000\r\n\r\n");
+  EXPECT_EQ(body.receive().result_int(), 413U);
+}
+
+TEST_F(HttpServerTest, ContinuesWhenAskedTo) {
+  start();
+  Client client(server_->port());
+  client.send(
+      "POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Type: application/json\r\n"
+      "Content-Length: 2\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_EQ(client.receive().result_int(), 100U);
+  client.send("{}");
+  EXPECT_EQ(client.receive().result_int(), 202U);
+}
+
+TEST_F(HttpServerTest, RequestThatTricklesInIsCutOffAtItsDeadline) {
+  HttpServerSettings settings;
+  settings.header_timeout = 100ms;
+  start(settings);
+  Client client(server_->port());
+  client.send("GET /livez HT");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(client.is_closed());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
+}
+
+TEST_F(HttpServerTest, ConnectionsBeyondTheLimitAreTold503) {
+  HttpServerSettings settings;
+  settings.max_connections = 1;
+  start(settings);
+  Client first(server_->port());
+  EXPECT_EQ(first.get("/livez").result_int(), 200U);
+  Client second(server_->port());
+  EXPECT_EQ(second.receive().result_int(), 503U);
+  EXPECT_TRUE(second.is_closed());
+  EXPECT_EQ(first.get("/livez").result_int(), 200U);
+}
+
+TEST_F(HttpServerTest, StopsAtOnceWithIdleConnectionsOpen) {
+  start();
+  Client idle(server_->port()), half(server_->port());
+  EXPECT_EQ(idle.get("/livez").result_int(), 200U);
+  half.send("GET /li");
+  const auto begin = std::chrono::steady_clock::now();
+  server_->stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 800ms);
+  EXPECT_TRUE(idle.is_closed());
+}
+
+TEST_F(HttpServerTest, RequestUnderWayIsAnsweredBeforeTheEnd) {
+  std::promise<void> entered, release;
+  cell_.on_capture = [&](const CaptureRequest&) -> Result<CaptureArchive> {
+    entered.set_value();
+    release.get_future().wait();
+    return CaptureArchive{"a.tar", "x"};
+  };
+  start();
+  Client client(server_->port());
+  client.send("POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  entered.get_future().wait();
+  auto stopped = std::async(std::launch::async, [&] { server_->stop(10s); });
+  release.set_value();
+  EXPECT_EQ(client.receive().result_int(), 200U);
+  stopped.get();
+}
+
+TEST_F(HttpServerTest, PortInUseIsNamed) {
+  start();
+  HttpServerSettings settings;
+  settings.port = server_->port();
+  const auto second = HttpServer::start(settings, router_);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, HttpServerError::port_in_use);
+  EXPECT_NE(second.error().message().find(std::to_string(server_->port())), std::string::npos);
+}
+
+TEST_F(HttpServerTest, AddressOfAnotherMachineIsNamed) {
+  HttpServerSettings settings;
+  settings.address = "192.0.2.1";
+  EXPECT_EQ(HttpServer::start(settings, router_).error().code, HttpServerError::bad_address);
+  settings.address = "localhorst";
+  EXPECT_EQ(HttpServer::start(settings, router_).error().code, HttpServerError::bad_address);
+}
+
+TEST_F(HttpServerTest, ExceptionInARouteIsAnswered500) {
+  cell_.on_start = [](const CalibrationRequest&) -> Result<CalibrationReport> {
+    throw std::runtime_error("boom");
+  };
+  start();
+  Client client(server_->port());
+  client.send("POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  EXPECT_EQ(client.receive().result_int(), 500U);
+  EXPECT_EQ(client.get("/livez").result_int(), 200U);
+}
+
+}  // namespace
+}  // namespace calibrd::api

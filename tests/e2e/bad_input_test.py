@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""What cannot be used stops the start with exit status 2 and one message that names it and says what to do."""
+
+import shutil
+import socket
+import subprocess
+import unittest
+from pathlib import Path
+
+from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest
+
+
+class BadInput(CellTest):
+    def run_daemon(self, *settings: str, config: Path = SOURCE / "config/demo.toml"):
+        own = (f"storage.path={self.folder / 'calibrd.db'}", "server.port=0", "robot.port=9", *OF_THIS_BUILD)
+        options = [word for setting in (*own, *settings) for word in ("--set", setting)]
+        return subprocess.run([BIN / "calibrd", "serve", "--config", config, *options], cwd=self.folder, timeout=20,
+                              capture_output=True, text=True, check=False)
+
+    def expect_refused(self, ended, *words: str):
+        print(ended.stderr.strip().splitlines()[-1] if ended.stderr.strip() else "(no message)")
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        for word in words:
+            self.assertIn(word, ended.stderr)
+
+    def robot_copy(self) -> Path:
+        shutil.copytree(URDF.parents[1], self.folder / "demo_arm7")
+        return self.folder / "demo_arm7/urdf/demo_arm7.urdf"
+
+    def changed_urdf(self, old: str, new: str) -> str:
+        urdf = self.robot_copy()
+        text = urdf.read_text()
+        self.assertIn(old, text)
+        urdf.write_text(text.replace(old, new))
+        return f"robot.urdf={urdf}"
+
+    def test_a_port_in_use(self):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = taken.getsockname()[1]
+            self.expect_refused(self.run_daemon(f"server.port={port}"), str(port))
+
+    def test_a_mistyped_key_is_named_with_its_line_and_the_nearest_name(self):
+        config = self.folder / "typo.toml"
+        config.write_text('[robot]\nurdf = "a.urdf"\nhots = "127.0.0.1"\n')
+        self.expect_refused(self.run_daemon(config=config), "typo.toml", "3", "hots", "host")
+
+    def test_a_value_out_of_range(self):
+        self.expect_refused(self.run_daemon("sensors.kinect2.fx=-1"), "fx")
+
+    def test_a_configuration_that_is_not_toml(self):
+        config = self.folder / "broken.toml"
+        config.write_text("[robot\n")
+        self.expect_refused(self.run_daemon(config=config), "broken.toml", "1")
+
+    def test_a_missing_configuration(self):
+        self.expect_refused(self.run_daemon(config=self.folder / "none.toml"), "none.toml")
+
+    def test_a_missing_urdf(self):
+        self.expect_refused(self.run_daemon("robot.urdf=/nowhere/arm.urdf"), "/nowhere/arm.urdf")
+
+    def test_a_broken_urdf(self):
+        urdf = self.robot_copy()
+        urdf.write_text(urdf.read_text()[:700])
+        self.expect_refused(self.run_daemon(f"robot.urdf={urdf}"), str(urdf))
+
+    def test_a_urdf_with_a_joint_without_parent(self):
+        self.expect_refused(self.run_daemon(self.changed_urdf('parent link="turret"', 'parent link="tower"')), "urdf")
+
+    def test_a_missing_mesh(self):
+        self.expect_refused(self.run_daemon(self.changed_urdf("turret.stl", "tower.stl")), "tower.stl")
+
+    def test_a_broken_mesh(self):
+        urdf = self.robot_copy()
+        (urdf.parents[1] / "meshes/turret.stl").write_bytes(b"solid nothing")
+        self.expect_refused(self.run_daemon(f"robot.urdf={urdf}"), "turret.stl")
+
+    def test_an_unknown_joint_is_named_with_the_nearest_one(self):
+        self.expect_refused(self.run_daemon("robot.joints.joint_z.sign=-1"), "joint_z")
+
+    def test_an_unknown_base_link(self):
+        self.expect_refused(self.run_daemon("robot.base_link=bass_link"), "bass_link")
+
+    def test_a_storage_folder_that_cannot_be_made(self):
+        self.expect_refused(self.run_daemon("storage.path=/proc/none/calibrd.db"), "/proc/none")
+
+    def test_a_driver_folder_that_is_not_there(self):
+        self.expect_refused(self.run_daemon("sensors.kinect2.driver_directory=/nowhere"), "/nowhere")
+
+    def test_a_file_that_is_no_database(self):
+        (self.folder / "text.db").write_text("this is no database, but a text of more than a hundred bytes " * 4)
+        self.expect_refused(self.run_daemon(f"storage.path={self.folder / 'text.db'}"), "text.db")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

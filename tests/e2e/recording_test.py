@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""A capture recorded from the live cell calibrates offline; a spoilt one is refused with a reason."""
+
+import io
+import json
+import struct
+import subprocess
+import tarfile
+import unittest
+import zlib
+
+from cell import BIN, ROBOTS, SENSOR, CellTest, call
+from poses import axis_turn, difference, multiply, shift
+
+POSTURES = 3
+
+
+def png(width: int, height: int, bits: int) -> bytes:
+    """A black grey-scale image."""
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    rows = zlib.compress((b"\0" + b"\0" * (width * bits // 8)) * height)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, 0, 0, 0, 0)) +
+            chunk(b"IDAT", rows) + chunk(b"IEND", b""))
+
+
+class Recording(CellTest):
+    def record(self):
+        """Records from the live cell; leaves the capture's folder, the true pose and a guess off by some."""
+        simulator = self.simulate()
+        daemon = self.serve(simulator).wait_ready()
+        answer = call(daemon.port, "POST", f"/api/v1/sensors/{SENSOR}/captures",
+                      {"postures": POSTURES, "timeout_s": 120, "note": "end to end"}, timeout_s=150)
+        self.assertEqual(answer.status, 200, answer.body[:500])
+        with tarfile.open(fileobj=io.BytesIO(answer.body)) as archive:
+            archive.extractall(self.folder / "capture")
+        self.capture = next((self.folder / "capture").rglob("capture.json")).parent
+        self.true_pose = simulator.true_pose()
+        guess = multiply(multiply(shift((0.02, -0.02, 0.01)), self.true_pose), axis_turn((1, 2, 0), 0.03))
+        self.guess = self.folder / "guess.json"
+        self.guess.write_text(json.dumps({"T_base_sensor": guess}))
+        daemon.stop()
+        simulator.stop()
+
+    def calibrate(self, *options):
+        return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--models", ROBOTS,
+                               "--guess", self.guess, *options], capture_output=True, text=True, timeout=120, check=False)
+
+    def expect_refused(self, *words: str):
+        ended = self.calibrate()
+        print(ended.stderr.strip())
+        self.assertEqual((ended.returncode, ended.stdout), (2, ""), ended.stderr)
+        for word in words:
+            self.assertIn(word, ended.stderr)
+
+    def spoil(self, change) -> None:
+        """Changes capture.json; `change` gets it as it was recorded."""
+        description = json.loads(self.recorded)
+        change(description)
+        (self.capture / "capture.json").write_text(json.dumps(description))
+
+    def test_it_calibrates_and_each_way_to_spoil_it_is_named(self):
+        self.record()
+        self.recorded = (self.capture / "capture.json").read_text()
+        with self.subTest("as recorded"):
+            ended = self.calibrate("--json")
+            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+            result = json.loads(ended.stdout)
+            mm, mrad = difference(result["T_base_sensor"], self.true_pose)
+            print(f"{result['verdict']}, {result['views']} views, off by {mm:.3f} mm, {mrad:.3f} mrad")
+            self.assertEqual((result["verdict"], result["views"]), ("accepted", POSTURES))
+            self.assertLess(max(mm, mrad), 3)
+        spoilt = {
+            "no frame": (lambda c: c.update(frames=[]), "no frame"),
+            "unknown format": (lambda c: c.update(format="capture/9"), "capture/1"),
+            "joint missing": (lambda c: [c["robot"]["joint_names"].pop(),
+                                         *(f["joint_positions_rad"].pop() for f in c["frames"])], "joint_t"),
+            "joint unknown": (lambda c: c["robot"]["joint_names"].__setitem__(0, "joint_x"), "joint_x"),
+            "too few positions": (lambda c: c["frames"][0]["joint_positions_rad"].pop(), "joint_positions_rad"),
+            "no focal length": (lambda c: c["sensor"].pop("fx"), "fx"),
+            "depth image missing": (lambda c: c["frames"][0].update(depth="none.png"), "none.png"),
+            "no URDF": (lambda c: c["robot"].update(urdf="none.urdf"), "none.urdf"),
+        }
+        for name, (change, word) in spoilt.items():
+            with self.subTest(name):
+                self.spoil(change)
+                self.expect_refused(word)
+        for name, image in {"wrong size": png(100, 80, 16), "wrong depth": png(512, 424, 8), "empty": b""}.items():
+            with self.subTest(name):
+                (self.capture / "spoilt.png").write_bytes(image)
+                self.spoil(lambda c: c["frames"][0].update(depth="spoilt.png"))
+                self.expect_refused("spoilt.png")
+        with self.subTest("frames without a measurement"):
+            (self.capture / "spoilt.png").write_bytes(png(512, 424, 16))
+            self.spoil(lambda c: [f.update(depth="spoilt.png") for f in c["frames"]])
+            ended = self.calibrate()
+            self.assertEqual(ended.returncode, 3, ended.stderr)
+            self.assertEqual(json.loads(ended.stdout)["verdict"], "rejected")
+        with self.subTest("not a number"):
+            (self.capture / "capture.json").write_text(self.recorded.replace('"fx":', '"fx": NaN, "fx_was":', 1))
+            self.expect_refused("capture.json")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

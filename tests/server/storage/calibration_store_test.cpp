@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/storage/calibration_store.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace calibrd {
+namespace {
+
+using api::CalibrationReport;
+using api::JobStatus;
+
+class Store : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("calibrd_store_" + std::to_string(getpid()));
+    std::filesystem::remove_all(folder_);
+    open();
+  }
+  void TearDown() override {
+    store_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  std::filesystem::path file() const { return folder_ / "deep" / "cell.db"; }
+  void open() {
+    store_.reset();
+    auto opened = CalibrationStore::open(file());
+    ASSERT_TRUE(opened) << opened.error().message();
+    store_ = *std::move(opened);
+  }
+
+  CalibrationReport add(const std::string& id, const std::string& key = {}) {
+    CalibrationReport report;
+    report.id = id;
+    report.sensor_id = "kinect2";
+    report.created = std::chrono::system_clock::now();
+    report.postures_wanted = 3;
+    api::CalibrationRequest request;
+    request.idempotency_key = key;
+    request.fingerprint = "{}";
+    EXPECT_TRUE(store_->add(report, request));
+    return report;
+  }
+  void finish(CalibrationReport report, Verdict verdict = Verdict::accepted) {
+    CalibrationResult result;
+    result.verdict = verdict;
+    result.T_base_sensor = Pose(Eigen::Translation3d(1, 2, 3));
+    report.result = result;
+    report.status = verdict == Verdict::accepted ? JobStatus::succeeded : JobStatus::failed;
+    report.finished = std::chrono::system_clock::now();
+    EXPECT_TRUE(store_->finish(report));
+  }
+  /// What SQLite says to statements that no daemon would run.
+  std::string run_raw(const std::string& sql) {
+    sqlite3* connection = nullptr;
+    sqlite3_open(file().c_str(), &connection);
+    sqlite3_exec(connection, sql.c_str(), nullptr, nullptr, nullptr);
+    std::string words = sqlite3_errmsg(connection);
+    sqlite3_close(connection);
+    return words;
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<CalibrationStore> store_;
+};
+
+TEST_F(Store, KeepsAResultAcrossARestart) {
+  finish(add("c1"));
+  open();
+  const auto found = store_->find("c1");
+  ASSERT_TRUE(found && *found);
+  EXPECT_EQ((*found)->status, JobStatus::succeeded);
+  ASSERT_TRUE((*found)->result);
+  EXPECT_DOUBLE_EQ((*found)->result->T_base_sensor->translation().z(), 3);
+  EXPECT_FALSE((*found)->current);
+  EXPECT_FALSE(*store_->find("c2"));
+}
+
+TEST_F(Store, TheLastActivatedIsCurrentAndAnEarlierOneCanBeAgain) {
+  const auto first = add("c1"), second = add("c2");
+  finish(first);
+  finish(second);
+  EXPECT_FALSE(*store_->current("kinect2"));
+  EXPECT_TRUE(store_->activate(first));
+  EXPECT_TRUE(store_->activate(second));
+  EXPECT_EQ((*store_->current("kinect2"))->id, "c2");
+  EXPECT_TRUE(store_->activate(first));
+  open();
+  EXPECT_EQ((*store_->current("kinect2"))->id, "c1");
+  EXPECT_TRUE((*store_->find("c1"))->current);
+  EXPECT_FALSE((*store_->find("c2"))->current);
+  EXPECT_FALSE(*store_->current("other"));
+}
+
+TEST_F(Store, ResultsCannotBeChangedOrDeleted) {
+  finish(add("c1"));
+  EXPECT_EQ(run_raw("UPDATE results SET status = 'failed'"), "results are kept");
+  EXPECT_EQ(run_raw("DELETE FROM results"), "results are kept");
+  EXPECT_EQ(run_raw("DELETE FROM calibrations"), "calibrations are kept");
+  EXPECT_EQ((*store_->find("c1"))->status, JobStatus::succeeded);
+}
+
+TEST_F(Store, ASecondEndOfACalibrationIsRefused) {
+  const auto report = add("c1");
+  finish(report);
+  EXPECT_FALSE(store_->finish(report));
+}
+
+TEST_F(Store, CalibrationUnderWayWhenTheDaemonEndedHasFailed) {
+  add("c1");
+  EXPECT_EQ((*store_->find("c1"))->status, JobStatus::queued);
+  open();
+  const auto found = *store_->find("c1");
+  EXPECT_EQ(found->status, JobStatus::failed);
+  EXPECT_NE(found->message.find("daemon ended"), std::string::npos);
+}
+
+TEST_F(Store, HistoryIsNewestFirstAndPaged) {
+  for (const auto* id : {"c1", "c2", "c3"}) finish(add(id));
+  const auto first = store_->history({"kinect2", 2, ""});
+  ASSERT_TRUE(first);
+  ASSERT_EQ(first->calibrations.size(), 2U);
+  EXPECT_EQ(first->calibrations[0].id, "c3");
+  EXPECT_TRUE(first->more);
+  const auto second = store_->history({"kinect2", 2, "c2"});
+  ASSERT_EQ(second->calibrations.size(), 1U);
+  EXPECT_EQ(second->calibrations[0].id, "c1");
+  EXPECT_FALSE(second->more);
+  EXPECT_TRUE(store_->history({"other", 2, ""})->calibrations.empty());
+}
+
+TEST_F(Store, FindsWhatAnIdempotencyKeyStarted) {
+  add("c1", "key-1");
+  open();
+  const auto start = store_->find_start("kinect2", "key-1");
+  ASSERT_TRUE(start && *start);
+  EXPECT_EQ((*start)->calibration_id, "c1");
+  EXPECT_EQ((*start)->fingerprint, "{}");
+  EXPECT_FALSE(*store_->find_start("kinect2", "key-2"));
+  EXPECT_FALSE(*store_->find_start("other", "key-1"));
+}
+
+TEST_F(Store, WritesAreSyncedToTheDisk) { EXPECT_TRUE(std::filesystem::exists(file().string() + "-wal")); }
+
+TEST_F(Store, FileThatIsNoStoreIsRefused) {
+  const auto other = folder_ / "notes.txt";
+  std::ofstream(other) << std::string(5000, 'x');
+  const auto opened = CalibrationStore::open(other);
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, StorageError::not_a_store);
+  EXPECT_NE(opened.error().message().find("notes.txt"), std::string::npos);
+}
+
+TEST_F(Store, FolderThatCannotBeMadeIsNamed) {
+  std::ofstream(folder_ / "file") << "x";
+  const auto opened = CalibrationStore::open(folder_ / "file" / "cell.db");
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, StorageError::cannot_open);
+}
+
+TEST_F(Store, StoreOfANewerVersionIsRefused) {
+  run_raw("PRAGMA user_version = 99");
+  store_.reset();
+  const auto opened = CalibrationStore::open(file());
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, StorageError::newer_schema);
+}
+
+}  // namespace
+}  // namespace calibrd
