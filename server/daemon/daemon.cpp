@@ -56,7 +56,7 @@ Status check_config(const Config& config) {
   const auto model = load_model(config.robot);
   if (!model) return model.error();
   if (const auto mapping = make_mapping(config, *model); !mapping) return mapping.error();
-  if (auto status = check(link_settings(config.robot, kControllerAxes)); !status) return status;
+  if (auto status = check(link_settings(config.robot)); !status) return status;
   return check_sensors(config);
 }
 
@@ -90,8 +90,7 @@ struct Daemon::Parts {
   }
 
   Status make_link(const Config& config) {
-    auto created = RobotLink::create(link_settings(config.robot, kControllerAxes),
-                                     logged_link(cell->robot_link().events()));
+    auto created = RobotLink::create(link_settings(config.robot), logged_link(cell->robot_link().events()));
     if (!created) return created.error();
     link = *std::move(created);
     cell->robot_link().set_health_source([this] { return link->health(); });

@@ -141,7 +141,7 @@ TEST_F(LoadConfig, OverrideWithoutValueIsRefused) {
 TEST_F(LoadConfig, ReadsJointsCouplingAndGuess) {
   const auto loaded = load(std::string(kSmallest) + R"(
 [robot.joints.joint_3]
-index = 2
+axis = 2
 sign = -1
 offset_deg = 90
 coupling = { joint_2 = 1.0 }
@@ -154,7 +154,7 @@ guess = [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]
 )");
   ASSERT_TRUE(loaded) << loaded.error().message();
   const auto& joint = loaded->config.robot.joints.at("joint_3");
-  EXPECT_EQ(joint.index, 2);
+  EXPECT_EQ(joint.axis, 2);
   EXPECT_EQ(joint.sign, -1);
   EXPECT_DOUBLE_EQ(joint.coupling.at("joint_2"), 1.0);
   ASSERT_TRUE(loaded->config.sensors.at("k").guess_T_base_sensor);
