@@ -119,6 +119,10 @@ TEST_F(LoadConfig, BrokenTomlNamesTheLine) {
       << failure("[robot]\nurdf = \n");
 }
 
+TEST_F(LoadConfig, EmptyFileIsAFileWithoutKeys) {
+  EXPECT_NE(failure("").find("robot.urdf"), std::string::npos) << failure("");
+}
+
 TEST_F(LoadConfig, MissingNeededKeyIsNamed) {
   EXPECT_NE(failure("[robot]\nhost = \"h\"\n").find("robot.urdf"), std::string::npos);
   EXPECT_NE(failure(std::string(kSmallest) + "[sensors.a]\nfx = 1\n").find("sensors.a.fy"),

@@ -53,7 +53,8 @@ TEST_F(LiveRecording, OneAtATimeAndLetGoAtTheEnd) {
       if (recorded || recorded.error().code != ApiError::capture_in_progress) return recorded;
     }
   });
-  wait_for([&] { return cell_->record_capture(request(1, 0.001)).error().code == ApiError::capture_in_progress; });
+  wait_for(
+      [&] { return cell_->record_capture(request(1, 0.001)).error().code == ApiError::capture_in_progress; });
   cell_->request_stop();
   EXPECT_EQ(first.get().error().code, ApiError::shutting_down);
 }
