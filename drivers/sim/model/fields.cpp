@@ -158,9 +158,9 @@ Status Fields::finish() {
   for (const auto& [key, value] : *object_) {
     if (error_) break;
     if (std::find(known_.begin(), known_.end(), std::string_view(key)) != known_.end()) continue;
-    std::string expected = "no such key; known are";
-    for (const auto& name : known_) expected += " " + name;
-    error_ = sim_error(code_, path(key) + ": " + expected);
+    std::string known = "no such key; known are";
+    for (const auto& name : known_) known += " " + name;
+    error_ = sim_error(code_, path(key) + ": " + known);
   }
   if (error_) return *error_;
   return Done{};

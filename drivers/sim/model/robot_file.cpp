@@ -23,14 +23,9 @@ namespace fs = std::filesystem;
 Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
-  // From roll, pitch, yaw rather than from the parser's quaternion: fixed axes, R = Rz Ry Rx.
-  double roll = 0, pitch = 0, yaw = 0;
-  pose.rotation.getRPY(roll, pitch, yaw);
+  const urdf::Rotation& q = pose.rotation;
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() =
-      (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  result.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
   result.translation() = vector_of(pose.position);
   return result;
 }

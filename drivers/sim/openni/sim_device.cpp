@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <string>
 
 namespace calibrd::sim {
 namespace {
@@ -14,7 +15,6 @@ std::chrono::steady_clock::time_point time_point_of(std::int64_t ns) {
   return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(ns));
 }
 
-constexpr char kSerial[] = "calibrd-sim";
 constexpr std::chrono::milliseconds kHangPoll{20};
 
 }  // namespace
@@ -61,10 +61,11 @@ void SimDevice::destroyStream(oni::driver::StreamBase* stream) {
 
 OniStatus SimDevice::getProperty(int id, void* data, int* size) {
   wait_while_hanging();
-  if (id != ONI_DEVICE_PROPERTY_SERIAL_NUMBER || *size < static_cast<int>(sizeof(kSerial)))
-    return ONI_STATUS_NOT_SUPPORTED;
-  std::memcpy(data, kSerial, sizeof(kSerial));
-  *size = sizeof(kSerial);
+  const std::string serial = "calibrd-sim-" + std::to_string(sensor_);
+  const auto needed = static_cast<int>(serial.size()) + 1;
+  if (id != ONI_DEVICE_PROPERTY_SERIAL_NUMBER || *size < needed) return ONI_STATUS_NOT_SUPPORTED;
+  std::memcpy(data, serial.c_str(), serial.size() + 1);
+  *size = needed;
   return ONI_STATUS_OK;
 }
 

@@ -13,7 +13,7 @@ namespace calibrd::sim {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr int kPostureTries = 20000, kPoseTries = 300;
+constexpr int kPostureTries = 20000, kPoseTries = 100;
 constexpr std::size_t kCheckPoints = 30;
 constexpr std::size_t kTrialViews = 2;  // enough to turn down most places of the sensor
 constexpr std::int64_t kViewStep_ns = 3'000'000'000;
@@ -98,9 +98,8 @@ std::size_t mean_pixels(const std::vector<SimulatedView>& views) {
 }
 
 /// Points of the last link's surface that this view sees.
-void add_check_points(const Recording& recording, std::size_t index, std::size_t count,
-                      const SensorTables& tables, const SensorModel& model, Random& random,
-                      std::vector<CheckPoint>& points) {
+void add_check_points(const Recording& recording, std::size_t index, const SensorTables& tables,
+                      const SensorModel& model, Random& random, std::vector<CheckPoint>& points) {
   const Robot& robot = recording.cell().robot;
   const auto last = std::find_if(robot.links.rbegin(), robot.links.rend(),
                                  [](const RobotLink& link) { return !link.mesh.vertices.empty(); });
@@ -112,7 +111,7 @@ void add_check_points(const Recording& recording, std::size_t index, std::size_t
   const Eigen::Isometry3d T_sensor_base = state.sensors[0].T_base_sensor.pose().inverse();
   const CameraParameters& camera = tables.grid.camera.parameters();
   constexpr std::size_t kTries = 400;
-  for (std::size_t i = 0; i < kTries && count > 0; ++i) {
+  for (std::size_t i = 0; i < kTries && points.size() < kCheckPoints; ++i) {
     const Eigen::Vector3d p_link =
         last->mesh.vertices[random.bits() % last->mesh.vertices.size()].cast<double>();
     const Eigen::Vector3d p_sensor = T_sensor_base * T_base_true * p_link;
@@ -124,24 +123,30 @@ void add_check_points(const Recording& recording, std::size_t index, std::size_t
     if (model.truth().robot[at] == 0 || std::abs(model.truth().depth_m[at] - p_sensor.z()) > kSeen_m)
       continue;
     points.push_back({p_sensor, T_base_reported * p_link});
-    --count;
   }
+}
+
+/// Some of each view, as evenly as they allow.
+std::vector<CheckPoint> dealt(const std::vector<std::vector<CheckPoint>>& candidates) {
+  std::vector<CheckPoint> points;
+  for (std::size_t round = 0; round < kCheckPoints; ++round)
+    for (const auto& view : candidates)
+      if (round < view.size() && points.size() < kCheckPoints) points.push_back(view[round]);
+  return points;
 }
 
 /// All views from one place of the sensor; nothing when too little of the robot is seen from there.
 bool record_from_here(Recording& recording, const CaptureOptions& options, const SensorTables& tables,
                       SensorModel& model, SimulatedCapture& capture) {
   capture.views.clear();
-  capture.check_points.clear();
   Random choice(capture.seed ^ 0x5eed);
+  std::vector<std::vector<CheckPoint>> candidates;
   for (std::size_t i = 0; i < options.postures; ++i) {
     capture.views.push_back(take_view(recording, i, capture.seed, model));
     if (i + 1 == kTrialViews && mean_pixels(capture.views) < options.min_robot_pixels / 2) return false;
-    // A view that hides the last link leaves its share to those after it.
-    const std::size_t due = (kCheckPoints * (i + 1) + options.postures - 1) / options.postures;
-    const std::size_t wanted = due - capture.check_points.size();
-    add_check_points(recording, i, wanted, tables, model, choice, capture.check_points);
+    add_check_points(recording, i, tables, model, choice, candidates.emplace_back());
   }
+  capture.check_points = dealt(candidates);
   return mean_pixels(capture.views) >= options.min_robot_pixels && !capture.check_points.empty();
 }
 

@@ -1,11 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // The program itself: started as a process, spoken to over real sockets.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -16,9 +12,7 @@
 #include <thread>
 
 #include "tests/core/robot/scratch_folder.hpp"
-#include "tests/drivers/sim/sim_fixtures.hpp"
-
-extern char** environ;
+#include "tests/drivers/sim/child_program.hpp"
 
 namespace calibrd::sim {
 namespace {
@@ -26,39 +20,13 @@ namespace {
 namespace http = boost::beast::http;
 using boost::asio::ip::tcp;
 
-/// calibrd-sim with the given arguments; killed, if it still runs, in the end.
-class Program {
- public:
-  explicit Program(std::vector<std::string> arguments) {
+/// calibrd-sim with the given arguments.
+struct Program : test::ChildProgram {
+  explicit Program(std::vector<std::string> arguments) : ChildProgram(command(std::move(arguments))) {}
+  static std::vector<std::string> command(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), CALIBRD_SIM_PROGRAM);
-    std::vector<char*> argv;
-    for (auto& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t quiet;
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", O_WRONLY, 0);
-    EXPECT_EQ(::posix_spawn(&pid_, argv[0], &quiet, nullptr, argv.data(), environ), 0);
-    posix_spawn_file_actions_destroy(&quiet);
+    return arguments;
   }
-  ~Program() {
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
-
-  void signal(int number) const { ::kill(pid_, number); }
-
-  /// Exit status; -1 when it does not end in time.
-  int wait(std::chrono::milliseconds limit) {
-    int status = 0;
-    if (!test::eventually([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; }, limit)) return -1;
-    pid_ = 0;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
-  }
-
- private:
-  pid_t pid_ = 0;
 };
 
 std::string text_of(const std::filesystem::path& path) {
