@@ -8,6 +8,16 @@
 #include "api/routes/names.hpp"
 
 namespace calibrd {
+namespace {
+
+/// What a client sent, fit for one line of a log.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
+}  // namespace
 
 void log_calibration(const api::CalibrationReport& calibration) {
   const auto verdict =
@@ -27,7 +37,8 @@ void log_pose(const api::PoseReport& pose) {
 
 void log_access(const api::AccessRecord& record) {
   const auto level = record.status == 500 ? spdlog::level::err : spdlog::level::debug;
-  spdlog::log(level, "{} {} {} {} us", record.method, record.path, record.status, record.duration.count());
+  spdlog::log(level, "{} {} {} {} us", printable(record.method), printable(record.path), record.status,
+              record.duration.count());
 }
 
 RobotLinkEvents logged_link(RobotLinkEvents events) {

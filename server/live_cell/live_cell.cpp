@@ -22,7 +22,11 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
           [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); },
           log_.on_calibration, settings_.jobs) {}
 
-LiveCell::~LiveCell() { request_stop(); }
+LiveCell::~LiveCell() {
+  request_stop();
+  // Sensors tell jobs of complete postures, and jobs refer to sensors: the threads of the former end first.
+  for (const auto& [id, entry] : entries_) entry->sensor->join();
+}
 
 Status LiveCell::add_sensor(const SensorSetup& setup) {
   auto gate = settings_.gate;

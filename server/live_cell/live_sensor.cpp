@@ -43,6 +43,10 @@ LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunct
 
 LiveSensor::~LiveSensor() {
   request_stop();
+  join();
+}
+
+void LiveSensor::join() {
   if (thread_.joinable()) thread_.join();
 }
 

@@ -49,6 +49,8 @@ class LiveSensor {
   void start(std::unique_ptr<DepthSource> source);
   /// Returns at once; the thread, and with it the source, ends soon after.
   void request_stop() { is_stopping_ = true; }
+  /// Waits for the thread to end.
+  void join();
 
   const std::string& id() const { return settings_.id; }
   const CameraModel& camera() const { return settings_.camera; }
