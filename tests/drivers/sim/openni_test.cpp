@@ -1,14 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // The simulated sensor through the real OpenNI2 library.
-#include <OpenNI.h>
-#include <gtest/gtest.h>
-
+#include <cmath>
 #include <filesystem>
-#include <future>
 
-#include "tests/drivers/sim/child_program.hpp"
-#include "tests/drivers/sim/running_world.hpp"
+#include "tests/drivers/sim/openni_fixture.hpp"
 
 namespace calibrd::sim {
 namespace {
@@ -17,54 +13,7 @@ using openni::Device;
 using openni::OpenNI;
 using openni::VideoFrameRef;
 using openni::VideoStream;
-
-constexpr int kWait_ms = 10'000;
-constexpr const char* kTwoSensors =
-    R"(, "sensors": [{"id": "eye", "position_m": [1.3, 0.2, 0.7], "target_m": [0, 0, 0.4]},
-                     {"id": "ear", "position_m": [0, 1.5, 0.7], "target_m": [0, 0, 0.4]}],
-        "objects": [{"name": "bench", "box_m": [2, 2, 0.1], "position_m": [0, 0, -0.05]}])";
-
-class OpenNi : public testing::Test {
- protected:
-  OpenNi() : world_(test::world_from(kTwoSensors)) { EXPECT_EQ(OpenNI::initialize(), openni::STATUS_OK); }
-  ~OpenNi() override {
-    depth_.destroy();
-    infrared_.destroy();
-    device_.close();
-    OpenNI::shutdown();
-  }
-
-  void open(const char* uri = "calibrd-sim://0") {
-    ASSERT_EQ(device_.open(uri), openni::STATUS_OK) << OpenNI::getExtendedError();
-    ASSERT_EQ(depth_.create(device_, openni::SENSOR_DEPTH), openni::STATUS_OK);
-    ASSERT_EQ(infrared_.create(device_, openni::SENSOR_IR), openni::STATUS_OK);
-  }
-  void start() {
-    ASSERT_EQ(depth_.start(), openni::STATUS_OK);
-    ASSERT_EQ(infrared_.start(), openni::STATUS_OK);
-  }
-  /// The next frame of a stream; an invalid one when none comes in time.
-  static VideoFrameRef next(VideoStream& stream, int wait_ms = kWait_ms) {
-    VideoStream* streams[] = {&stream};
-    int ready = 0;
-    VideoFrameRef frame;
-    if (OpenNI::waitForAnyStream(streams, 1, &ready, wait_ms) == openni::STATUS_OK) stream.readFrame(&frame);
-    return frame;
-  }
-  static std::vector<std::uint16_t> pixels(const VideoFrameRef& frame) {
-    const auto* data = static_cast<const std::uint16_t*>(frame.getData());
-    return {data, data + frame.getDataSize() / 2};
-  }
-  /// What the sensor must have seen at a time.
-  test::Exposure expected(std::int64_t time_ns) {
-    SensorModel model(world_.cell(), world_.state().sensors[0].camera);
-    return test::expose(model, world_.state(), 0, time_ns);
-  }
-
-  test::RunningWorld world_;
-  Device device_;
-  VideoStream depth_, infrared_;
-};
+using test::OpenNi;
 
 TEST_F(OpenNi, ListsEverySensorOfTheWorldAndNoOther) {
   openni::Array<openni::DeviceInfo> devices;
@@ -173,77 +122,6 @@ TEST_F(OpenNi, ErrorsSetAtRunTimeShowInTheNextFrames) {
   }));
 }
 
-TEST_F(OpenNi, SilentSensorDeliversNothingUntilItSpeaksAgain) {
-  open();
-  start();
-  ASSERT_TRUE(next(depth_).isValid());
-  world_.set_mode(SensorMode::silent);
-  EXPECT_TRUE(test::eventually([&] { return !next(depth_, 300).isValid(); }));
-  world_.set_mode(SensorMode::normal);
-  EXPECT_TRUE(next(depth_).isValid());
-}
-
-TEST_F(OpenNi, HangingSensorBlocksItsCaller) {
-  open();
-  start();
-  ASSERT_TRUE(next(depth_).isValid());
-  world_.set_mode(SensorMode::hanging);
-  auto stopping = std::async(std::launch::async, [&] { depth_.stop(); });
-  EXPECT_EQ(stopping.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
-  world_.set_mode(SensorMode::normal);
-  EXPECT_EQ(stopping.wait_for(std::chrono::seconds(10)), std::future_status::ready);
-}
-
-struct Plugs : OpenNI::DeviceConnectedListener, OpenNI::DeviceDisconnectedListener {
-  Plugs() {
-    OpenNI::addDeviceConnectedListener(this);
-    OpenNI::addDeviceDisconnectedListener(this);
-  }
-  ~Plugs() override {
-    OpenNI::removeDeviceConnectedListener(this);
-    OpenNI::removeDeviceDisconnectedListener(this);
-  }
-  void onDeviceConnected(const openni::DeviceInfo*) override { ++in; }
-  void onDeviceDisconnected(const openni::DeviceInfo*) override { ++out; }
-  std::atomic<int> in = 0, out = 0;
-};
-
-TEST_F(OpenNi, UnplugAndReplugAreAnnounced) {
-  Plugs plugs;
-  open();
-  start();
-  ASSERT_TRUE(next(depth_).isValid());
-  world_.set_mode(SensorMode::unplugged);
-  EXPECT_TRUE(test::eventually([&] { return plugs.out == 1; }));
-  EXPECT_TRUE(test::eventually([&] { return !next(depth_, 300).isValid(); }));
-  depth_.destroy();
-  infrared_.destroy();
-  device_.close();
-  EXPECT_NE(device_.open("calibrd-sim://0"), openni::STATUS_OK);
-  world_.set_mode(SensorMode::normal);
-  EXPECT_TRUE(test::eventually([&] { return plugs.in == 1; }));
-  open();
-  start();
-  EXPECT_TRUE(next(depth_).isValid());
-}
-
-TEST_F(OpenNi, SimulatorThatRestartsIsFoundAgain) {
-  Plugs plugs;
-  open();
-  start();
-  ASSERT_TRUE(next(depth_).isValid());
-  world_.stop();
-  EXPECT_TRUE(test::eventually([&] { return plugs.out == 2; }));
-  depth_.destroy();
-  infrared_.destroy();
-  device_.close();
-  world_.start();
-  EXPECT_TRUE(test::eventually([&] { return plugs.in == 2; }));
-  open();
-  start();
-  EXPECT_TRUE(next(depth_).isValid());
-}
-
 TEST_F(OpenNi, OpeningAndClosingLeavesNothingBehind) {
   const auto threads = [] {
     return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
@@ -290,17 +168,6 @@ TEST_F(OpenNi, RecordingPlaysBackTheSameDepth) {
 
 TEST_F(OpenNi, PlainClientReadsThirtyFrames) {
   EXPECT_EQ(test::ChildProgram({CALIBRD_PLAIN_CLIENT}).wait(std::chrono::seconds(60)), 0);
-}
-
-TEST_F(OpenNi, CrashEndsTheProcessThatHoldsTheSensor) {
-  test::ChildProgram client({CALIBRD_PLAIN_CLIENT, "calibrd-sim://0"});
-  // Each further crash is another order; a client that has not opened the device yet overlooks the ones
-  // before.
-  const auto crash = [&] {
-    world_.change([](WorldState& state) { ++state.sensors[0].crashes; });
-    return client.wait(std::chrono::milliseconds(200)) == 1000 + SIGSEGV;
-  };
-  EXPECT_TRUE(test::eventually(crash));
 }
 
 }  // namespace
