@@ -19,8 +19,8 @@ function(calibrd_library target)
   calibrd_target_defaults(${target})
 endfunction()
 
-# calibrd_executable(name source...): a program in build/<preset>/bin. It exports nothing of its libraries: on Debian
-# 12 the weak symbols of our Boost would take the place of those in PCL's shared objects, which have another Boost.
+# calibrd_executable(name source...): a program in build/<preset>/bin. It exports nothing of its libraries: weak symbols
+# of our Boost would take the place of those in shared objects that were compiled against the system's.
 function(calibrd_executable target)
   add_executable(${target} ${ARGN})
   calibrd_target_defaults(${target})

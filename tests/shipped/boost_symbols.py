@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails when two Boosts meet in one program.
 
-On Debian 12 PCL is compiled against Boost 1.74 and everything else against 1.81. The linker keeps one of
-two weak symbols of the same name, without a word, whichever Boost it came from. So
+On Debian 12 the system's Boost is 1.74, and calibrd is compiled against 1.81 in a prefix of its own. The linker
+keeps one of two weak symbols of the same name, without a word, whichever Boost it came from. So
 - no object may see both Boosts,
 - no weak symbol that speaks of boost may be defined by objects of both sides,
-- no program may export such a symbol that PCL's shared objects define as well: it would take theirs' place.
+- no program may export such a symbol that a shared object it loads defines as well (as PCL's would): it would take
+  the other's place.
 
 usage: boost_symbols.py BUILD_DIRECTORY NINJA
 """
@@ -74,9 +75,9 @@ def exported_symbols(binary: str) -> set[str]:
 
 
 def displaced_by(program: Path) -> set[str]:
-    """The symbols of PCL's shared objects in whose place the program would put its own."""
-    libraries = set(re.findall(r"=> (\S*/libpcl_\S+)", run("ldd", str(program))))
-    exported = exported_symbols(str(program)) if libraries else set()
+    """The symbols of shared objects in whose place the program would put its own."""
+    exported = exported_symbols(str(program))
+    libraries = re.findall(r"=> (/\S+)", run("ldd", str(program))) if exported else []
     return exported.intersection(set().union(*map(exported_symbols, libraries)))
 
 
@@ -93,7 +94,7 @@ def check(build: Path, ninja: str) -> tuple[list[str], str]:
     system, private = symbols_of(use.system, build), symbols_of(use.private, build)
     found = [f"{name}: sees both Boosts" for name in use.both]
     found += [f"weak on both sides: {name}" for name in readable(system & private)]
-    found += [f"{path.name} exports over PCL's: {name}" for path in programs for name in readable(displaced_by(path))]
+    found += [f"{path.name} exports over a shared object: {name}" for path in programs for name in readable(displaced_by(path))]
     return found, (f"{len(use.system)} objects use the system's Boost ({len(system)} weak symbols), {len(use.private)} "
                    f"the private one ({len(private)}); {len(programs)} programs")
 

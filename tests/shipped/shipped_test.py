@@ -80,12 +80,12 @@ class BoostSymbols(unittest.TestCase):
 
     def test_finds_a_program_that_puts_its_boost_in_the_place_of_a_library_s(self):
         with tempfile.TemporaryDirectory() as folder:
-            compile_boost_user(folder, "pcl", 74)
+            compile_boost_user(folder, "theirs", 74)
             compile_boost_user(folder, "ours", 81)
-            gcc(folder, "-shared", "pcl.o", "-o", "libpcl_x.so")
+            gcc(folder, "-shared", "theirs.o", "-o", "libtheirs.so")
             subprocess.run(["ar", "rcs", "libours.a", "ours.o"], cwd=folder, check=True)
-            Path(folder, "main.cpp").write_text("int pcl(); int ours(); int main() { return pcl() + ours(); }")
-            link = ("main.cpp", "-L.", "-lours", "-lpcl_x", f"-Wl,-rpath,{folder}")
+            Path(folder, "main.cpp").write_text("int theirs(); int ours(); int main() { return theirs() + ours(); }")
+            link = ("main.cpp", "-L.", "-lours", "-ltheirs", f"-Wl,-rpath,{folder}")
             gcc(folder, *link, "-o", "open")
             gcc(folder, *link, "-o", "closed", "-Wl,--exclude-libs,ALL")
             self.assertEqual(displaced_by(Path(folder, "open")), {VERSION})
