@@ -4,8 +4,9 @@
 #
 # Builds calibrd, starts a simulated cell (robot controller and Kinect v2) and the daemon, calibrates once over
 # HTTP and compares the pose with the simulator's true one. Works on a machine with nothing installed.
-#   scripts/demo.sh          ends everything it started; exit status 0 when the pose is within 3 mm and 3 mrad
-#   scripts/demo.sh --keep   leaves the cell and the daemon running, until Ctrl-C
+#   scripts/demo.sh            ends everything it started; exit status 0 when the pose is within 3 mm and 3 mrad
+#   scripts/demo.sh --measure  also prints the processor time and the memory that the daemon takes
+#   scripts/demo.sh --keep     leaves the cell and the daemon running, until Ctrl-C
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -74,7 +75,7 @@ calibrate() {
     tr -d '\r' | sed -n 's/^[Ll]ocation: //p') || die "the calibration was refused"
   while curl -fsS "$job" -o "$work/job.json" || die "no answer from $job"; do
     status=$(jq -r '"\(.status) \(.message // "")"' "$work/job.json")
-    [ "$status" = "$shown" ] || echo "  ${shown:=$status}"
+    [ "$status" = "$shown" ] || echo "  $status"
     shown=$status
     case $status in succeeded* | failed* | cancelled*) break ;; esac
     sleep 0.5
@@ -115,9 +116,13 @@ keep_running() {
   wait
 }
 
+case ${1:-} in '' | --keep | --measure) ;; *) die "unknown option '$1'. Options: --keep, --measure" ;; esac
 build
 start_simulator
 start_daemon
 calibrate
 compare
-[ "${1:-}" != --keep ] || keep_running
+case ${1:-} in
+  --keep) keep_running ;;
+  --measure) scripts/measure_live.sh "${pids[1]}" ;;
+esac

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/read.hpp>
@@ -20,6 +21,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::size_t kReadAtOnce = 4096;
+constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
 
 std::optional<Request> request_of(http::request<http::string_body>& message) {
   auto target = parse_target(message.target());
@@ -130,6 +132,7 @@ asio::awaitable<bool> Session::answer(Parser& parser) {
     co_return co_await write(problem(ApiError::bad_request, "the path cannot be decoded"), head, keep_alive);
   stream_.expires_never();
   auto response = co_await dispatch(*request);
+  if (response.worth_waiting.count() > 0) response = co_await ask_again(*request, std::move(response));
   if (context_.log) {
     const auto duration = std::chrono::steady_clock::now() - begin;
     context_.log({request->method, request->path, response.status,
@@ -144,6 +147,19 @@ asio::awaitable<Response> Session::dispatch(const Request& request) {
     co_return router.answer(request);
   };
   co_return co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
+}
+
+/// Routes hold no connection: waiting for a change is asking again, at a pace a client does not notice.
+asio::awaitable<Response> Session::ask_again(const Request& request, Response response) {
+  const auto deadline = std::chrono::steady_clock::now() + response.worth_waiting;
+  asio::steady_timer pause(stream_.get_executor());
+  while (response.worth_waiting.count() > 0 && !context_.stopping &&
+         std::chrono::steady_clock::now() < deadline) {
+    pause.expires_after(kAskAgainAfter);
+    co_await pause.async_wait(asio::use_awaitable);
+    response = co_await dispatch(request);
+  }
+  co_return response;
 }
 
 asio::awaitable<bool> Session::write(Response response, bool head, bool keep_alive) {

@@ -41,6 +41,7 @@ class Session {
   boost::asio::awaitable<boost::beast::error_code> read(Parser& parser);
   boost::asio::awaitable<bool> answer(Parser& parser);
   boost::asio::awaitable<Response> dispatch(const Request& request);
+  boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
   boost::asio::awaitable<void> refuse_unreadable(boost::beast::error_code why);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <chrono>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,9 @@ struct Response {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< Content-Type included
   std::string body;
+  /// The client would rather wait for another answer than have this one: ask again until there is one, for at
+  /// most this long.
+  std::chrono::milliseconds worth_waiting{0};
 };
 
 /// Splits "/path?a=1&b" and decodes it; nothing when it cannot be decoded.

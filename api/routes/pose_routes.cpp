@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <boost/json/object.hpp>
+#include <charconv>
 #include <sstream>
 
 #include "api/json/pose_json.hpp"
@@ -13,6 +14,8 @@ namespace calibrd::api {
 namespace {
 
 namespace json = boost::json;
+
+constexpr double kLongestWait_ms = 60'000;
 
 using FormatWriter = void (*)(json::object&, const Pose&);
 
@@ -132,20 +135,42 @@ Response format_response(const PoseReport& pose, const Format& format) {
   return json_response(200, body);
 }
 
+/// ?wait=30s or 500ms, at most a minute.
+Result<std::chrono::milliseconds> read_wait(const Request& request) {
+  const auto asked = request.query.find("wait");
+  if (asked == request.query.end()) return std::chrono::milliseconds(0);
+  const auto& text = asked->second;
+  double count = 0;
+  const auto [unit, failure] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const std::string_view rest(unit, static_cast<std::size_t>(text.data() + text.size() - unit));
+  const double ms = rest == "s" ? count * 1000 : count;
+  if (failure != std::errc() || (rest != "s" && rest != "ms") || !(ms >= 0 && ms <= kLongestWait_ms))
+    return fail(ApiError::bad_query, "wait: \"" + text + "\" is not a time up to 60s, such as 30s or 500ms");
+  return std::chrono::milliseconds(static_cast<int>(ms));
+}
+
+Response respond(const Request& request, const PoseReport& pose, const Format* format,
+                 std::chrono::milliseconds wait) {
+  auto response = format ? format_response(pose, *format) : json_response(200, full_body(pose));
+  const auto tag = etag(pose);
+  const bool unchanged = etag_matches(request.header("if-none-match"), tag);
+  if (response.status == 200 && unchanged) response = {304, {}, {}, {}};
+  if (unchanged) response.worth_waiting = wait;
+  response.headers.emplace_back("ETag", tag);
+  add_age_headers(response, pose);
+  return response;
+}
+
 Response answer_pose(const Request& request, const PathValues& values, CellService& service) {
-  if (auto unknown = unknown_query(request, {"format"})) return problem(*unknown);
+  if (auto unknown = unknown_query(request, {"format", "wait"})) return problem(*unknown);
   const auto asked = request.query.find("format");
   const auto* format = asked == request.query.end() ? nullptr : find_format(asked->second);
   if (asked != request.query.end() && !format)
     return problem(ApiError::unknown_format, asked->second + " is not one of " + format_names());
+  const auto wait = read_wait(request);
+  if (!wait) return problem(wait.error());
   const auto pose = service.pose(values[0]);
-  if (!pose) return problem(pose.error());
-  auto response = format ? format_response(*pose, *format) : json_response(200, full_body(*pose));
-  const auto tag = etag(*pose);
-  if (response.status == 200 && etag_matches(request.header("if-none-match"), tag)) response = {304, {}, {}};
-  response.headers.emplace_back("ETag", tag);
-  add_age_headers(response, *pose);
-  return response;
+  return pose ? respond(request, *pose, format, *wait) : problem(pose.error());
 }
 
 }  // namespace

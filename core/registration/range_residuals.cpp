@@ -44,6 +44,13 @@ bool is_rim(const VirtualMeasurement& prediction, int x, int y) {
   return false;
 }
 
+/// Tells what a residual is: agreeing, or something in front, or the space behind seen through.
+void count(double residual, double kernel_m, RangeTally& tally) {
+  ++tally.measured;
+  if (residual > kernel_m) ++tally.seen_through;
+  if (residual < -kernel_m) ++tally.occluded;
+}
+
 }  // namespace
 
 void RangeTally::merge(const RangeTally& other) {
@@ -74,12 +81,10 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
       if (cos_incidence < settings.min_cos_incidence) continue;
       ++tally.predicted;
       if (view.depth_m[i] <= 0) continue;
-      ++tally.measured;
 
       Observation o;
       o.residual = view.depth_m[i] - correction.measured(z);
-      if (o.residual > settings.kernel_m) ++tally.seen_through;
-      if (o.residual < -settings.kernel_m) ++tally.occluded;
+      count(o.residual, settings.kernel_m, tally);
       o.robust_weight = tukey_weight(o.residual, settings.kernel_m);
       if (o.robust_weight <= 0) continue;
       ++tally.agreeing;

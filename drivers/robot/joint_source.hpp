@@ -54,8 +54,8 @@ struct RobotLinkHealth {
 struct RobotLinkEvents {
   std::function<void(const ControllerJoints&)> on_joints;
   std::function<void(const ControllerStatus&)> on_status;
-  std::function<void(const RobotLinkHealth&)>
-      on_health;  ///< on every change of state, reason or status_fresh
+  /// On every change of state, reason or status_fresh.
+  std::function<void(const RobotLinkHealth&)> on_health;
 };
 
 }  // namespace calibrd

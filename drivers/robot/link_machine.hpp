@@ -16,28 +16,32 @@ namespace calibrd {
 
 /// When a link is stale, silent, and how patiently it comes back.
 struct LinkSettings {
-  std::chrono::milliseconds stale_after{250};  ///< a kind of message is stale when none came for so long
-  std::chrono::milliseconds reconnect_after{
-      2000};  ///< without any message; also when a connection counts as settled
-  std::chrono::milliseconds connect_timeout{2000};  ///< name look-up included
-  std::chrono::milliseconds backoff_first{50};  ///< pause before the first reconnect; doubles up to the cap
-  std::chrono::milliseconds backoff_cap{500};
+  using Interval = std::chrono::milliseconds;
+
+  Interval stale_after{250};       ///< a kind of message is stale when none came for so long
+  Interval reconnect_after{2000};  ///< without any message; what lasted so long counts as settled
+  Interval connect_timeout{2000};  ///< name look-up included
+  Interval backoff_first{50};      ///< pause before a new attempt; doubles until a connection has settled
+  Interval backoff_cap{500};
   /// A controller that closes a connection so soon after accepting it has given its slot to another client.
   /// The reference client comes back after 5 s, so anything below that would miss the fight.
-  std::chrono::milliseconds eviction_within{10000};
-  std::chrono::milliseconds eviction_pause{30000};  ///< after two such closes in a row
+  Interval eviction_within{10000};
+  Interval eviction_pause{30000};  ///< after two such closes in a row
 };
 
 /// What the shell must do next, in this order.
 namespace link_step {
-struct Connect {};  ///< open a connection; answer with on_connected or on_connect_failed
-struct Close {};    ///< close the connection or give up the attempt; no answer expected
+/// Open a connection; answer with on_connected or on_connect_failed.
+struct Connect {};
+/// Close the connection or give up the attempt; no answer expected.
+struct Close {};
 struct Send {
   std::vector<std::byte> bytes;
 };
+/// Call on_tick then; replaces an earlier one.
 struct ArmTimer {
   Clock::time_point at;
-};  ///< call on_tick then; replaces an earlier one
+};
 struct DeliverJoints {
   ControllerJoints joints;
 };

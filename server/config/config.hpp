@@ -24,11 +24,21 @@ struct ServerConfig {
 
 /// How one joint of the model follows the controller: see JointMappingEntry.
 struct JointConfig {
-  int index = -1;  ///< place in the controller's message, from 0; -1: that of the joint in the model
+  int axis = -1;  ///< place in the controller's message, from 0; -1: that of the joint in the model
   int sign = 1;
   double scale = 1;
   double offset_deg = 0;
   std::map<std::string, double> coupling;  ///< other model joint -> factor on its controller axis
+};
+
+struct LinkConfig {
+  Duration stale_after{250};
+  Duration reconnect_after{2000};
+  Duration connect_timeout{2000};
+  Duration backoff_first{50};
+  Duration backoff_cap{500};
+  Duration eviction_within{10'000};
+  Duration eviction_pause{30'000};
 };
 
 struct RobotConfig {
@@ -41,8 +51,12 @@ struct RobotConfig {
   int port = 50241;
   std::string byte_order = "big";
   int group = 0;
-  Duration joints_stale_after{250};
-  Duration reconnect_after{2000};
+  int joint_count = 10;
+  int real_bytes = 4;
+  double max_position = 100;
+  double max_velocity = 100;
+  std::vector<std::array<double, 2>> joint_ranges;
+  LinkConfig link;
   std::map<std::string, JointConfig> joints;
 };
 

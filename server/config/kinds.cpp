@@ -223,6 +223,25 @@ Kind<std::array<double, 5>> five_reals() {
           [](const std::array<double, 5>& value) { return number_list(value.data(), value.size()); }};
 }
 
+Kind<std::vector<std::array<double, 2>>> ranges() {
+  return {"list of [lower, upper]",
+          [](const RawValue& value) -> Result<std::vector<std::array<double, 2>>> {
+            const auto numbers = as_numbers(value);
+            if (!numbers || numbers->size() % 2 != 0)
+              return bad(shown(value) + " is not a list of [lower, upper]");
+            std::vector<std::array<double, 2>> all;
+            for (std::size_t i = 0; i < numbers->size(); i += 2)
+              all.push_back({(*numbers)[i], (*numbers)[i + 1]});
+            return all;
+          },
+          [](const std::vector<std::array<double, 2>>& value) {
+            std::string list;
+            for (const auto& range : value)
+              list.append(list.empty() ? "" : ", ").append(number_list(range.data(), range.size()));
+            return std::string("[").append(list).append("]");
+          }};
+}
+
 Kind<std::optional<Pose>> optional_pose() {
   return {"[x, y, z, qx, qy, qz, qw] or 4x4 matrix",
           [](const RawValue& value) -> Result<std::optional<Pose>> {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "server/config/config_error.hpp"
@@ -80,10 +81,10 @@ class Flattener {
 
 Result<std::vector<RawEntry>> read_toml_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::stringstream content;
-  if (!std::filesystem::is_regular_file(file) || !(content << stream.rdbuf()))
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  if (!std::filesystem::is_regular_file(file) || !stream.is_open() || stream.bad())
     return Error{ConfigError::file_unreadable, file.string()};
-  const auto parsed = toml::parse(content.str());
+  const auto parsed = toml::parse(content);
   if (!parsed) {
     const auto& failure = parsed.error();
     return Error{ConfigError::not_toml, file.filename().string() + ":" +

@@ -78,17 +78,41 @@ void declare_robot(std::vector<Setting>& table) {
   key("byte_order", &RobotConfig::byte_order, one_of({"big", "little"}), "",
       "Byte order of the controller (FS100 big; DX100, DX200, YRC1000 little).");
   key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0.");
-  key("joints_stale_after", &RobotConfig::joints_stale_after, duration(50ms, 10s), "",
+  key("joint_count", &RobotConfig::joint_count, integer(1, 10), "",
+      "How many values of a message are taken, from the first.");
+  key("real_bytes", &RobotConfig::real_bytes, one_of_numbers({4, 8}), "",
+      "Size of the protocol's reals; 8 only for servers built so.");
+  key("max_position", &RobotConfig::max_position, positive_real(), "rad, m",
+      "A message with a position beyond it is damage and is dropped.");
+  key("max_velocity", &RobotConfig::max_velocity, positive_real(), "rad/s, m/s",
+      "A message with a velocity beyond it is damage and is dropped.");
+  key("joint_ranges", &RobotConfig::joint_ranges, ranges(), "rad, m",
+      "Where each joint can be, [lower, upper] in wire order; a message outside is dropped.");
+}
+
+void declare_link(std::vector<Setting>& table) {
+  SectionDeclarer<LinkConfig> key(table, {"robot", "link"},
+                                  [](Config& c, const Names&) -> LinkConfig& { return c.robot.link; });
+  key("stale_after", &LinkConfig::stale_after, duration(50ms, 10s), "",
       "Joints older than this are not used.");
-  key("reconnect_after", &RobotConfig::reconnect_after, duration(500ms, 60s), "",
+  key("reconnect_after", &LinkConfig::reconnect_after, duration(500ms, 60s), "",
       "Silence after which the connection is made anew.");
+  key("connect_timeout", &LinkConfig::connect_timeout, duration(100ms, 60s), "",
+      "For one attempt, name look-up included.");
+  key("backoff_first", &LinkConfig::backoff_first, duration(10ms, 60s), "",
+      "Pause before the first new attempt; doubles up to backoff_cap.");
+  key("backoff_cap", &LinkConfig::backoff_cap, duration(10ms, 10min), "", "Longest pause between attempts.");
+  key("eviction_within", &LinkConfig::eviction_within, duration(0ms, 10min), "",
+      "A connection closed so soon after it was accepted has lost its slot to another client.");
+  key("eviction_pause", &LinkConfig::eviction_pause, duration(0ms, 1h), "",
+      "Pause after two such closes in a row.");
 }
 
 void declare_joints(std::vector<Setting>& table) {
   SectionDeclarer<JointConfig> key(
       table, {"robot", "joints", "*"},
       [](Config& c, const Names& n) -> JointConfig& { return c.robot.joints[n[0]]; });
-  key("index", &JointConfig::index, integer(-1, 9), "",
+  key("axis", &JointConfig::axis, integer(-1, 9), "",
       "Place of this joint in the controller's message, from 0. -1: its place in the model.");
   key("sign", &JointConfig::sign, one_of_numbers({1, -1}), "",
       "1, or -1 where controller and model turn in opposite directions.");
@@ -201,6 +225,7 @@ std::vector<Setting> build_table() {
   std::vector<Setting> table;
   declare_server(table);
   declare_robot(table);
+  declare_link(table);
   declare_joints(table);
   declare_coupling(table);
   declare_sensors(table);

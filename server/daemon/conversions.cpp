@@ -23,8 +23,8 @@ int place_of(const std::string& joint, const std::vector<std::string>& model_joi
 int axis_of(const std::string& joint, const RobotConfig& robot,
             const std::vector<std::string>& model_joints) {
   const auto configured = robot.joints.find(joint);
-  const bool has_index = configured != robot.joints.end() && configured->second.index >= 0;
-  return has_index ? configured->second.index : place_of(joint, model_joints);
+  const bool has_axis = configured != robot.joints.end() && configured->second.axis >= 0;
+  return has_axis ? configured->second.axis : place_of(joint, model_joints);
 }
 
 JointMappingEntry mapping_entry(const std::string& joint, const RobotConfig& robot,
@@ -55,16 +55,21 @@ api::HttpServerSettings http_settings(const Config& config) {
   return settings;
 }
 
-StateClientSettings link_settings(const RobotConfig& robot, int axis_count) {
+StateClientSettings link_settings(const RobotConfig& robot) {
   StateClientSettings settings;
   settings.host = robot.host;
   settings.port = robot.port;
   settings.byte_order =
       robot.byte_order == "little" ? simple_message::ByteOrder::little : simple_message::ByteOrder::big;
   settings.group = robot.group;
-  settings.joint_count = axis_count;
-  settings.link.stale_after = robot.joints_stale_after;
-  settings.link.reconnect_after = robot.reconnect_after;
+  settings.joint_count = robot.joint_count;
+  settings.real_bytes = robot.real_bytes;
+  settings.max_position = robot.max_position;
+  settings.max_velocity = robot.max_velocity;
+  for (const auto& [lower, upper] : robot.joint_ranges) settings.joint_ranges.push_back({lower, upper});
+  settings.link = {robot.link.stale_after,   robot.link.reconnect_after, robot.link.connect_timeout,
+                   robot.link.backoff_first, robot.link.backoff_cap,     robot.link.eviction_within,
+                   robot.link.eviction_pause};
   return settings;
 }
 
@@ -95,7 +100,7 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.search_paths = config.robot.search_paths;
   settings.base_link = config.robot.base_link;
   settings.controller_frame = config.robot.controller_frame;
-  settings.gate.stale_after = config.robot.joints_stale_after;
+  settings.gate.stale_after = config.robot.link.stale_after;
   settings.gate.settle_time = config.calibration.settle_time;
   settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
   settings.watch.max_unverified = config.pose.max_unverified;
@@ -109,6 +114,7 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
 
 JointMappingConfig mapping_config(const RobotConfig& robot, const std::vector<std::string>& model_joints) {
   JointMappingConfig mapping;
+  mapping.axis_count = robot.joint_count;
   for (const auto& [joint, unused] : robot.joints)
     if (place_of(joint, model_joints) < 0)
       mapping.joints.push_back(mapping_entry(joint, robot, model_joints));

@@ -14,12 +14,9 @@
 
 namespace calibrd {
 
-/// Values in a message of the controller: the protocol always carries ten.
-inline constexpr int kControllerAxes = 10;
-
 // From the configuration to what each part takes.
 api::HttpServerSettings http_settings(const Config& config);
-StateClientSettings link_settings(const RobotConfig& robot, int axis_count);
+StateClientSettings link_settings(const RobotConfig& robot);
 SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor);
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor);
 LiveCellSettings cell_settings(const Config& config, const std::string& version);

@@ -5,13 +5,12 @@
 #include <spdlog/spdlog.h>
 
 #include "api/http/http_server.hpp"
-#include "api/json/calibration_result_json.hpp"
-#include "api/routes/names.hpp"
 #include "api/routes/routes.hpp"
 #include "core/robot/nearest_name.hpp"
 #include "core/robot/robot_model_error.hpp"
 #include "drivers/sensor/sensor_process.hpp"
 #include "server/daemon/conversions.hpp"
+#include "server/daemon/event_log.hpp"
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
 #include "server/storage/calibration_store.hpp"
@@ -51,38 +50,13 @@ Status check_sensors(const Config& config) {
   return Done{};
 }
 
-void log_calibration(const api::CalibrationReport& calibration) {
-  spdlog::info(
-      "calibration {} of {}: {}{}{}", calibration.id, calibration.sensor_id, api::name_of(calibration.status),
-      calibration.result ? std::string(", ") + api::name_of(calibration.result->verdict) : std::string(),
-      calibration.message.empty() ? std::string() : ". " + calibration.message);
-}
-
-void log_access(const api::AccessRecord& record) {
-  const auto level = record.status >= 500 ? spdlog::level::warn : spdlog::level::debug;
-  spdlog::log(level, "{} {} {} {} us", record.method, record.path, record.status, record.duration.count());
-}
-
-/// The link's events with every change of its health logged.
-RobotLinkEvents logged(RobotLinkEvents events) {
-  events.on_health = [inner = std::move(events.on_health),
-                      was_streaming = false](const RobotLinkHealth& health) mutable {
-    const bool streaming = health.state == RobotLinkHealth::State::streaming;
-    if (streaming && !was_streaming) spdlog::info("robot: joints are coming in");
-    if (!streaming) spdlog::warn("robot: {}", health.reason);
-    was_streaming = streaming;
-    inner(health);
-  };
-  return events;
-}
-
 }  // namespace
 
 Status check_config(const Config& config) {
   const auto model = load_model(config.robot);
   if (!model) return model.error();
   if (const auto mapping = make_mapping(config, *model); !mapping) return mapping.error();
-  if (auto status = check(link_settings(config.robot, kControllerAxes)); !status) return status;
+  if (auto status = check(link_settings(config.robot)); !status) return status;
   return check_sensors(config);
 }
 
@@ -107,17 +81,16 @@ struct Daemon::Parts {
   Status make_cell(const Config& config, const std::string& version) {
     auto mapping = make_mapping(config, *model);
     if (!mapping) return mapping.error();
-    cell =
-        std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell, *std::move(mapping),
-                                   *store, core_estimator(*model, *virtual_cell), log_calibration);
+    cell = std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell,
+                                      *std::move(mapping), *store, core_estimator(*model, *virtual_cell),
+                                      CellLog{log_calibration, log_pose});
     for (const auto& [id, sensor] : config.sensors)
       if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
     return Done{};
   }
 
   Status make_link(const Config& config) {
-    auto created =
-        RobotLink::create(link_settings(config.robot, kControllerAxes), logged(cell->robot_link().events()));
+    auto created = RobotLink::create(link_settings(config.robot), logged_link(cell->robot_link().events()));
     if (!created) return created.error();
     link = *std::move(created);
     cell->robot_link().set_health_source([this] { return link->health(); });
@@ -137,7 +110,7 @@ struct Daemon::Parts {
     for (const auto& [id, sensor] : config.sensors) {
       auto source = SensorProcess::start(sensor_settings(id, sensor));
       if (!source) return source.error();
-      cell->start(id, *std::move(source));
+      cell->start(id, std::make_unique<LoggedSource>(id, *std::move(source)));
     }
     return Done{};
   }

@@ -10,19 +10,23 @@ namespace calibrd {
 using api::ApiError;
 
 LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
-                   JointMapping mapping, CalibrationStore& store, Estimator estimator,
-                   CalibrationJobs::Log log)
+                   JointMapping mapping, CalibrationStore& store, Estimator estimator, CellLog log)
     : settings_(std::move(settings)),
       store_(store),
       estimator_(std::move(estimator)),
+      log_(std::move(log)),
       robot_(model, std::move(mapping), settings_.gate, settings_.controller_frame),
       clouds_(virtual_cell, robot_),
       jobs_(
           store, estimator_.calibrate,
-          [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); }, std::move(log),
-          settings_.jobs) {}
+          [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); },
+          log_.on_calibration, settings_.jobs) {}
 
-LiveCell::~LiveCell() { request_stop(); }
+LiveCell::~LiveCell() {
+  request_stop();
+  // Sensors tell jobs of complete postures, and jobs refer to sensors: the threads of the former end first.
+  for (const auto& [id, entry] : entries_) entry->sensor->join();
+}
 
 Status LiveCell::add_sensor(const SensorSetup& setup) {
   auto gate = settings_.gate;
@@ -31,7 +35,7 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   entry->setup = setup;
   entry->sensor =
       std::make_unique<LiveSensor>(LiveSensorSettings{setup.id, setup.camera, gate, settings_.watch}, robot_,
-                                   estimator_.make_check(setup.camera));
+                                   estimator_.make_check(setup.camera), log_.on_pose);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();

@@ -34,6 +34,12 @@ struct LiveCellSettings {
   JobSettings jobs;
 };
 
+/// Who hears of what happens in the cell; called on the threads it happens on.
+struct CellLog {
+  CalibrationJobs::Log on_calibration;                  ///< every one that has ended
+  std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
+};
+
 struct SensorSetup {
   std::string id;
   CameraModel camera;
@@ -45,9 +51,9 @@ struct SensorSetup {
 /// add_sensor() and start() from one thread, before anything else; the rest from any.
 class LiveCell : public api::CellService {
  public:
-  /// `model` and `store` must outlive it; `virtual_cell` is copied. `log`: every calibration that has ended.
+  /// `model` and `store` must outlive it; `virtual_cell` is copied.
   LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
-           JointMapping mapping, CalibrationStore& store, Estimator estimator, CalibrationJobs::Log log);
+           JointMapping mapping, CalibrationStore& store, Estimator estimator, CellLog log);
   ~LiveCell() override;
 
   LiveRobot& robot_link() { return robot_; }
@@ -91,6 +97,7 @@ class LiveCell : public api::CellService {
   const Clock::time_point began_ = Clock::now();
   CalibrationStore& store_;
   const Estimator estimator_;
+  const CellLog log_;
   std::atomic<bool> is_stopping_{false};
   LiveRobot robot_;
   mutable CloudMaker clouds_;

@@ -89,6 +89,7 @@ std::optional<JointState> LiveRobot::newest_joints() const {
 
 api::RobotReport LiveRobot::report() const {
   const auto now = Clock::now();
+  bool streaming = false;
   api::RobotReport report;
   report.model = model_.name();
   report.base_frame = model_.base_link();
@@ -97,6 +98,7 @@ api::RobotReport LiveRobot::report() const {
   {
     const std::lock_guard lock(mutex_);
     const auto health = health_source_ ? health_source_() : health_;
+    streaming = health.state == RobotLinkHealth::State::streaming;
     report.link_state = name_of(health.state);
     report.link_reason = mapping_problem_.empty() ? health.reason : mapping_problem_;
     report.connects = health.connects;
@@ -108,7 +110,7 @@ api::RobotReport LiveRobot::report() const {
   }
   if (!report.joints) return report;
   report.joints_age = now - report.joints->stamp;
-  report.joints_stale = report.joints_age > stillness_.stale_after;
+  report.joints_stale = report.joints_age > stillness_.stale_after || !streaming;
   const auto poses = model_.forward_kinematics(report.joints->positions_rad);
   for (std::size_t i = 0; i < poses.size(); ++i) report.links.push_back({model_.links()[i].name, poses[i]});
   return report;

@@ -32,15 +32,21 @@ double seconds_of(Clock::time_point time) {
 
 }  // namespace
 
-LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check)
+LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
+                       std::function<void(const api::PoseReport&)> on_pose)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
+      on_pose_(std::move(on_pose)),
       gate_(settings_.gate),
       watch_(settings_.watch) {}
 
 LiveSensor::~LiveSensor() {
   request_stop();
+  join();
+}
+
+void LiveSensor::join() {
   if (thread_.joinable()) thread_.join();
 }
 
@@ -54,6 +60,7 @@ void LiveSensor::run() {
   while (!is_stopping_) {
     if (auto frame = source->next(pending_ ? kJointsPatience : kFramePatience)) take_up(*std::move(frame));
     if (pending_) settle();
+    tell_of_pose();
   }
   std::unique_lock lock(mutex_);
   const auto ended = std::move(source_);
@@ -132,6 +139,16 @@ void LiveSensor::note(FrameVerdict verdict) {
   const std::lock_guard lock(mutex_);
   verdict_ = verdict;
   ++counts_[static_cast<std::size_t>(verdict)];
+}
+
+void LiveSensor::tell_of_pose() {
+  {
+    const std::lock_guard lock(mutex_);
+    const Told now{pose_number_, watch_.state(), known_ && watch_.is_valid(Clock::now())};
+    if (now == told_) return;
+    told_ = now;
+  }
+  if (on_pose_) on_pose_(pose());
 }
 
 void LiveSensor::set_pose(api::PoseReport::Known known, std::optional<Clock::time_point> seen_at) {

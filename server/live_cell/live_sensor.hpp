@@ -41,12 +41,16 @@ struct Sighting {
 class LiveSensor {
  public:
   /// `robot` must outlive it.
-  LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check);
+  /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
+  LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
+             std::function<void(const api::PoseReport&)> on_pose = {});
   ~LiveSensor();
 
   void start(std::unique_ptr<DepthSource> source);
   /// Returns at once; the thread, and with it the source, ends soon after.
   void request_stop() { is_stopping_ = true; }
+  /// Waits for the thread to end.
+  void join();
 
   const std::string& id() const { return settings_.id; }
   const CameraModel& camera() const { return settings_.camera; }
@@ -73,11 +77,13 @@ class LiveSensor {
   void serve_tasks(const View& view, bool usable);
   void check(const View& view);
   void note(FrameVerdict verdict);
+  void tell_of_pose();
   double frame_rate_hz(Clock::time_point now) const;
 
   const LiveSensorSettings settings_;
   LiveRobot& robot_;
   const CheckFunction check_;
+  const std::function<void(const api::PoseReport&)> on_pose_;
   std::atomic<bool> is_stopping_{false};
 
   // The thread's own.
@@ -93,6 +99,13 @@ class LiveSensor {
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
   std::uint64_t pose_number_ = 0;  // counts set_pose()
+  struct Told {
+    std::uint64_t pose_number = 0;
+    api::PoseState state = api::PoseState::uncalibrated;
+    bool valid = false;
+    bool operator==(const Told&) const = default;
+  };
+  Told told_;  // what on_pose_ heard last
   std::vector<std::shared_ptr<CollectTask>> tasks_;
 
   std::thread thread_;

@@ -37,7 +37,7 @@ Status place_copy(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   fs::create_directories(to.parent_path(), failure);
   if (!failure) fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
-  if (failure) return Error{failure, to.string()};
+  if (failure) return Error{failure, from.string() + " to " + to.string()};
   return Done{};
 }
 

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <numeric>
-#include <sstream>
 #include <vector>
 
 namespace calibrd {
@@ -82,10 +82,11 @@ Result<std::string> tar_of_folder(const std::filesystem::path& folder, const std
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   TarWriter tar;
   for (const auto& file : files) {
-    std::ostringstream content;
-    if (!(content << std::ifstream(file, std::ios::binary).rdbuf()))
+    std::ifstream stream(file, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream.is_open() || stream.bad())
       return Error{std::make_error_code(std::errc::io_error), file.string()};
-    if (!tar.add_file(prefix + "/" + file.lexically_relative(folder).generic_string(), content.view(), now))
+    if (!tar.add_file(prefix + "/" + file.lexically_relative(folder).generic_string(), content, now))
       return Error{std::make_error_code(std::errc::filename_too_long), file.string()};
   }
   return tar.take();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <mutex>
 
 #include "api/problem/api_error.hpp"
 #include "api/service/cell_service.hpp"
@@ -44,10 +45,19 @@ class FakeCell : public CellService {
     pose_report.last_check = CheckReport{true, 0.97, 0.001, Seconds(0.5)};
   }
 
+  /// While a server is asking.
+  void set_valid(bool valid) {
+    const std::lock_guard lock(mutex_);
+    pose_report.valid = valid;
+  }
+
   CellReport cell() const override { return {"0", Seconds(1), robot_report, {sensor_report}}; }
   std::vector<SensorReport> sensors() const override { return {sensor_report}; }
   Result<SensorReport> sensor(std::string_view id) const override { return of_sensor(id, sensor_report); }
-  Result<PoseReport> pose(std::string_view id) const override { return of_sensor(id, pose_report); }
+  Result<PoseReport> pose(std::string_view id) const override {
+    const std::lock_guard lock(mutex_);
+    return of_sensor(id, pose_report);
+  }
   RobotReport robot() const override { return robot_report; }
   Result<CalibrationReport> start_calibration(const CalibrationRequest& request) override {
     if (request.sensor_id != "kinect2") return fail(ApiError::no_such_sensor, request.sensor_id);
@@ -74,6 +84,7 @@ class FakeCell : public CellService {
   }
 
  private:
+  mutable std::mutex mutex_;  // guards pose_report while a server runs
   template <class T>
   Result<T> of_sensor(std::string_view id, T value) const {
     if (id != "kinect2") return fail(ApiError::no_such_sensor, std::string(id));

@@ -20,8 +20,7 @@ BIN = BUILD / "bin"
 ROBOTS = BUILD / "share/calibrd/robots"
 URDF = ROBOTS / "demo_arm7/urdf/demo_arm7.urdf"
 SENSOR = "kinect2"
-OF_THIS_BUILD = (f"robot.urdf={URDF}", f"robot.search_paths=['{ROBOTS}']",
-                 f"sensors.{SENSOR}.driver_directory={BUILD / 'lib/calibrd-sim-openni'}")
+OF_THIS_BUILD = (f"robot.urdf={URDF}", f"sensors.{SENSOR}.driver_directory={BUILD / 'lib/calibrd-sim-openni'}")
 
 
 def free_port() -> int:
@@ -63,9 +62,9 @@ class Program:
     def __init__(self, name: str, folder: Path, *arguments, env: dict[str, str] | None = None):
         self.name = name
         self.log = folder / f"{name}.log"
-        self.process = subprocess.Popen([BIN / name, *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=self.log.open("w"),
-                                        env={**os.environ, **(env or {})})
+        with self.log.open("w") as log:
+            self.process = subprocess.Popen([BIN / name, *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL,
+                                            stdout=subprocess.DEVNULL, stderr=log, env={**os.environ, **(env or {})})
 
     def alive(self) -> bool:
         return self.process.poll() is None

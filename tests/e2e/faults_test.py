@@ -85,13 +85,13 @@ class Faults(CellTest):
         simulator.sensor_mode("normal")
         self.expect_sensor(daemon, True)
 
-    def test_a_robot_cut_off_silent_or_frozen_is_noticed_and_taken_up_again(self):
+    def test_a_robot_that_is_silent_blind_or_cut_off_is_noticed_and_taken_up_again(self):
         simulator = self.simulate()
         daemon = self.serve(simulator).wait_ready()
         for mode in ("silent", "status_only", "refuse"):
             simulator.controller_mode(mode)
             self.expect_robot(daemon, False)
-            self.assertTrue(daemon.robot()["joints"]["stale"])
+            wait_until("its joints are stale", lambda: daemon.robot()["joints"]["stale"])
             simulator.controller_mode("normal")
             self.expect_robot(daemon, True)
         simulator.tell("POST", "/controller/drop", how="reset")

@@ -87,11 +87,13 @@ class Recording(CellTest):
             with self.subTest(name):
                 self.spoil(change)
                 self.expect_refused(word)
-        for name, image in {"wrong size": png(100, 80, 16), "wrong depth": png(512, 424, 8), "empty": b""}.items():
+        images = {"wrong size": (png(100, 80, 16), "spoilt.png"), "wrong depth": (png(512, 424, 8), "frames[0].depth"),
+                  "empty": (b"", "spoilt.png")}
+        for name, (image, word) in images.items():
             with self.subTest(name):
                 (self.capture / "spoilt.png").write_bytes(image)
                 self.spoil(lambda c: c["frames"][0].update(depth="spoilt.png"))
-                self.expect_refused("spoilt.png")
+                self.expect_refused(word)
         with self.subTest("frames without a measurement"):
             (self.capture / "spoilt.png").write_bytes(png(512, 424, 16))
             self.spoil(lambda c: [f.update(depth="spoilt.png") for f in c["frames"]])

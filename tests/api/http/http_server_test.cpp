@@ -113,6 +113,24 @@ TEST_F(HttpServerTest, SameEtagIs304WithoutBody) {
   EXPECT_EQ(client.get("/livez").result_int(), 200U);
 }
 
+TEST_F(HttpServerTest, WaitEndsWhenThePoseChangesOrTheTimeIsUp) {
+  cell_.make_calibrated();
+  start();
+  Client client(server_->port());
+  const auto ask = [&](const std::string& tag, const std::string& wait) {
+    client.send("GET /api/v1/sensors/kinect2/pose?wait=" + wait + " HTTP/1.1\r\nIf-None-Match: " + tag +
+                "\r\n\r\n");
+  };
+  const auto tag = std::string(client.get("/api/v1/sensors/kinect2/pose")[http::field::etag]);
+  ask(tag, "200ms");
+  EXPECT_EQ(client.receive().result_int(), 304U);
+  ask(tag, "30s");
+  Client other(server_->port());
+  EXPECT_EQ(other.get("/livez").result_int(), 200U);
+  cell_.set_valid(false);
+  EXPECT_EQ(client.receive().result_int(), 200U);
+}
+
 TEST_F(HttpServerTest, QuickAnswersDoNotWaitForSlowOnes) {
   std::promise<void> release;
   cell_.on_capture = [&](const CaptureRequest&) -> Result<CaptureArchive> {

@@ -90,7 +90,9 @@ TEST(Target, IsDecodedOrRefused) {
   EXPECT_EQ(target->first, "/a b/c");
   EXPECT_EQ(target->second.at("y"), "/ z");
   EXPECT_TRUE(target->second.contains("flag"));
-  for (const auto* bad : {"", "a", "/%", "/%g0", "/%00", "/?a=%1"}) EXPECT_FALSE(parse_target(bad)) << bad;
+  EXPECT_EQ(parse_target("/%c3%a9")->first, "/é");
+  for (const auto* bad : {"", "a", "/%", "/%g0", "/%00", "/?a=%1", "/%ff", "/%c3", "/?a=%e2%28%a1"})
+    EXPECT_FALSE(parse_target(bad)) << bad;
 }
 
 }  // namespace

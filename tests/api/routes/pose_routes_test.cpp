@@ -97,6 +97,20 @@ TEST_F(PoseRoutes, EtagChangesWithCalibrationStateAndValidity) {
   EXPECT_EQ(get(kPose, {{"if-none-match", tag}}).status, 200);
 }
 
+TEST_F(PoseRoutes, WaitingIsWorthItOnlyWhileNothingHasChanged) {
+  cell_.make_calibrated();
+  get(kPose);
+  const auto tag = header("ETag");
+  EXPECT_EQ(get(std::string(kPose) + "?wait=30s", {{"if-none-match", tag}}).worth_waiting,
+            std::chrono::seconds(30));
+  EXPECT_EQ(get(std::string(kPose) + "?wait=500ms").worth_waiting, std::chrono::seconds(0));
+  cell_.pose_report.valid = false;
+  EXPECT_EQ(get(std::string(kPose) + "?wait=30s", {{"if-none-match", tag}}).worth_waiting,
+            std::chrono::seconds(0));
+  for (const auto* bad : {"30", "61s", "-1s", "s", ""})
+    EXPECT_EQ(get(std::string(kPose) + "?wait=" + bad).status, 400) << bad;
+}
+
 TEST_F(PoseRoutes, EtagNeverHidesAConflict) {
   cell_.make_calibrated();
   cell_.pose_report.valid = false;

@@ -100,6 +100,20 @@ TEST(ReadCapture, PrincipalPointOfACroppedImageMayLieOutside) {
   EXPECT_TRUE(recording.read());
 }
 
+TEST(ReadCapture, ExampleOfTheDocumentationIsReadable) {
+  std::ifstream page(fs::path(CALIBRD_DOCS_DIR) / "capture.md");
+  const std::string text((std::istreambuf_iterator<char>(page)), std::istreambuf_iterator<char>());
+  const auto begin = text.find("```json\n") + 8, end = text.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  const Recording recording;
+  recording.folder().write("capture.json", text.substr(begin, end - begin));
+  for (const char* image : {"depth_000.png", "depth_001.png", "image_000.png", "image_001.png"})
+    recording.put_image(image, 500, 512, 424);
+  const auto capture = recording.read();
+  ASSERT_TRUE(capture) << capture.error().message();
+  EXPECT_EQ(capture->views.size(), 2U);
+}
+
 // ---- where the URDF is looked for
 
 /// A recording without a URDF of its own, and a folder of models: MODELS/arm_support/urdf/arm.urdf.

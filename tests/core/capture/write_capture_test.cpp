@@ -138,6 +138,8 @@ struct BadRecording {
   CaptureError code;
 };
 
+void PrintTo(const BadRecording& value, std::ostream* out) { *out << value.name; }
+
 class WriteBadCapture : public testing::TestWithParam<BadRecording> {};
 
 TEST_P(WriteBadCapture, IsRefusedAndNothingIsLeftBehind) {

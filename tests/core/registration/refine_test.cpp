@@ -25,7 +25,7 @@ TEST(Refine, FromACentimetreOffReachesTheTruth) {
   const Vector6d error = difference(true_T_base_sensor(), r.T_base_sensor);
   EXPECT_LT(error.tail<3>().norm(), 1e-3);
   EXPECT_LT(error.head<3>().norm(), 1e-3);
-  EXPECT_NEAR(r.sigma_factor, 1, 0.3);  // the scene's noise is the expected one
+  EXPECT_NEAR(r.sigma_factor, 1, 0.5);  // the scene's noise is the expected one
   EXPECT_NEAR(r.residual_rms_m, 1.4e-3, 0.4e-3);
   EXPECT_GT(r.weakest_eigenvalue, 0);
 }

@@ -54,17 +54,24 @@ void add_behind(VirtualMeasurement& m, const VirtualMeasurement& other) {
   }
 }
 
+VirtualMeasurement measured(const VirtualCell& cell, const CameraModel& camera, const Pose& T_base_sensor) {
+  VirtualMeasurement m;
+  cell.measure(camera, T_base_sensor, m);
+  return m;
+}
+
 VirtualMeasurement truth(const std::vector<double>& joints, const CameraModel& camera,
-                         const Pose& T_base_sensor, bool clutter) {
+                         const Pose& T_base_sensor, const SceneSettings& settings) {
   static const VirtualCell arm(test_arm()), cell(test_clutter());
   VirtualCell posed(arm);
   posed.set_joints(joints);
-  VirtualMeasurement m;
-  posed.measure(camera, T_base_sensor, m);
-  if (!clutter) return m;
-  VirtualMeasurement surroundings;
-  cell.measure(camera, T_base_sensor, surroundings);
-  add_behind(m, surroundings);
+  VirtualMeasurement m = measured(posed, camera, T_base_sensor);
+  if (settings.clutter) add_behind(m, measured(cell, camera, T_base_sensor));
+  if (settings.second_arm) {
+    posed.set_joints(std::vector{1.0, -0.3, 0.5, 0.9, 0.0, 0.4});
+    const Pose T_base_second = shift(-0.3, -0.6, 0);
+    add_behind(m, measured(posed, camera, T_base_second.inverse() * T_base_sensor));
+  }
   return m;
 }
 
@@ -171,11 +178,10 @@ View render_view(const std::vector<double>& joints, const Pose& T_base_sensor,
   const CameraModel& camera = settings.camera;
   View view;
   view.joint_positions_rad = joints;
-  view.depth =
-      measure_depth(truth(joints, camera, T_base_sensor, settings.clutter), camera, settings, random);
+  view.depth = measure_depth(truth(joints, camera, T_base_sensor, settings), camera, settings, random);
   if (settings.images) {
     const CameraModel fine = finer(camera);
-    view.image = photograph(truth(joints, fine, T_base_sensor, settings.clutter), fine, settings, random);
+    view.image = photograph(truth(joints, fine, T_base_sensor, settings), fine, settings, random);
   }
   return view;
 }

@@ -36,6 +36,7 @@ struct SceneSettings {
   double offset_m = 0;
   double scale = 1;
   bool clutter = false;
+  bool second_arm = false;  ///< another arm of the same make beside ours, which does not follow the joints
   bool images = false;
   double hidden_share = 0;  ///< this share of the picture, from its left, is covered by something 0.6 m ahead
   std::uint64_t seed = 1;

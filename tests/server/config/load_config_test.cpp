@@ -119,6 +119,10 @@ TEST_F(LoadConfig, BrokenTomlNamesTheLine) {
       << failure("[robot]\nurdf = \n");
 }
 
+TEST_F(LoadConfig, EmptyFileIsAFileWithoutKeys) {
+  EXPECT_NE(failure("").find("robot.urdf"), std::string::npos) << failure("");
+}
+
 TEST_F(LoadConfig, MissingNeededKeyIsNamed) {
   EXPECT_NE(failure("[robot]\nhost = \"h\"\n").find("robot.urdf"), std::string::npos);
   EXPECT_NE(failure(std::string(kSmallest) + "[sensors.a]\nfx = 1\n").find("sensors.a.fy"),
@@ -141,7 +145,7 @@ TEST_F(LoadConfig, OverrideWithoutValueIsRefused) {
 TEST_F(LoadConfig, ReadsJointsCouplingAndGuess) {
   const auto loaded = load(std::string(kSmallest) + R"(
 [robot.joints.joint_3]
-index = 2
+axis = 2
 sign = -1
 offset_deg = 90
 coupling = { joint_2 = 1.0 }
@@ -154,7 +158,7 @@ guess = [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]
 )");
   ASSERT_TRUE(loaded) << loaded.error().message();
   const auto& joint = loaded->config.robot.joints.at("joint_3");
-  EXPECT_EQ(joint.index, 2);
+  EXPECT_EQ(joint.axis, 2);
   EXPECT_EQ(joint.sign, -1);
   EXPECT_DOUBLE_EQ(joint.coupling.at("joint_2"), 1.0);
   ASSERT_TRUE(loaded->config.sensors.at("k").guess_T_base_sensor);

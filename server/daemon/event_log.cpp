@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon/event_log.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "api/json/calibration_result_json.hpp"
+#include "api/routes/names.hpp"
+
+namespace calibrd {
+namespace {
+
+/// What a client sent, fit for one line of a log.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
+}  // namespace
+
+void log_calibration(const api::CalibrationReport& calibration) {
+  const auto verdict =
+      calibration.result ? std::string(", ") + api::name_of(calibration.result->verdict) : "";
+  const auto level = calibration.status == api::JobStatus::failed ? spdlog::level::warn : spdlog::level::info;
+  spdlog::log(level, "sensor {}: calibration {} {}{}. {}", calibration.sensor_id, calibration.id,
+              api::name_of(calibration.status), verdict, calibration.message);
+}
+
+void log_pose(const api::PoseReport& pose) {
+  if (pose.valid)
+    spdlog::info("sensor {}: the pose of calibration {} is valid", pose.sensor_id,
+                 pose.known->calibration_id);
+  else
+    spdlog::warn("sensor {}: no valid pose ({}): {}", pose.sensor_id, api::name_of(pose.state), pose.reason);
+}
+
+void log_access(const api::AccessRecord& record) {
+  const auto level = record.status == 500 ? spdlog::level::err : spdlog::level::debug;
+  spdlog::log(level, "{} {} {} {} us", printable(record.method), printable(record.path), record.status,
+              record.duration.count());
+}
+
+RobotLinkEvents logged_link(RobotLinkEvents events) {
+  using State = RobotLinkHealth::State;
+  events.on_health = [inner = std::move(events.on_health),
+                      last = RobotLinkHealth()](const RobotLinkHealth& health) mutable {
+    if (health.state == State::streaming && last.state != State::streaming)
+      spdlog::info("robot: joints are coming in");
+    else if (health.reason != last.reason && !health.reason.empty())
+      spdlog::log(health.connects == 0 ? spdlog::level::info : spdlog::level::warn, "robot: {}",
+                  health.reason);
+    last = health;
+    if (inner) inner(health);
+  };
+  return events;
+}
+
+LoggedSource::LoggedSource(std::string id, std::unique_ptr<DepthSource> source)
+    : id_(std::move(id)), source_(std::move(source)) {}
+
+std::optional<DepthFrame> LoggedSource::next(std::chrono::milliseconds timeout) {
+  auto frame = source_->next(timeout);
+  auto health = source_->health();
+  if (health.state == SensorHealth::State::streaming && last_.state != SensorHealth::State::streaming)
+    spdlog::info("sensor {}: frames are coming in from {}", id_, health.device);
+  else if (health.reason != last_.reason && !health.reason.empty())
+    spdlog::warn("{}", health.reason);
+  if (health.notice != last_.notice && !health.notice.empty())
+    spdlog::warn("sensor {}: {}", id_, health.notice);
+  last_ = std::move(health);
+  return frame;
+}
+
+}  // namespace calibrd

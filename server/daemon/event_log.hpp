@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+
+#include "api/http/http_server.hpp"
+#include "api/service/reports.hpp"
+#include "drivers/robot/joint_source.hpp"
+#include "drivers/sensor/depth_source.hpp"
+
+namespace calibrd {
+
+// What happens in the cell, as lines of the log.
+void log_calibration(const api::CalibrationReport& calibration);
+void log_pose(const api::PoseReport& pose);
+void log_access(const api::AccessRecord& record);
+
+/// The events, with every change of the link's health logged.
+RobotLinkEvents logged_link(RobotLinkEvents events);
+
+/// A depth source that logs every change of its health.
+class LoggedSource : public DepthSource {
+ public:
+  LoggedSource(std::string id, std::unique_ptr<DepthSource> source);
+  std::optional<DepthFrame> next(std::chrono::milliseconds timeout) override;
+  SensorHealth health() const override { return source_->health(); }
+
+ private:
+  const std::string id_;
+  const std::unique_ptr<DepthSource> source_;
+  SensorHealth last_;  // the reader's
+};
+
+}  // namespace calibrd

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon/conversions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace calibrd {
+namespace {
+
+const std::vector<std::string> kJoints{"joint_1", "joint_2", "joint_3"};
+
+std::vector<double> mapped(const RobotConfig& robot, std::vector<double> controller) {
+  controller.resize(10);
+  const auto mapping = JointMapping::make(mapping_config(robot, kJoints), kJoints);
+  EXPECT_TRUE(mapping) << mapping.error().message();
+  return *mapping->positions(controller);
+}
+
+TEST(Conversions, JointsFollowTheirOwnPlaceUnlessConfigured) {
+  EXPECT_EQ(mapped({}, {0.1, 0.2, 0.3}), (std::vector<double>{0.1, 0.2, 0.3}));
+}
+
+TEST(Conversions, JointSettingsReachTheMapping) {
+  RobotConfig robot;
+  robot.joints["joint_2"].sign = -1;
+  robot.joints["joint_2"].offset_deg = 90;
+  const auto positions = mapped(robot, {0.1, 0.2, 0.3});
+  EXPECT_DOUBLE_EQ(positions[1], -0.2 + std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(positions[2], 0.3);
+}
+
+TEST(Conversions, CouplingNamesTheOtherJointsAxis) {
+  RobotConfig robot;
+  robot.joints["joint_2"].axis = 2;
+  robot.joints["joint_3"].axis = 1;
+  robot.joints["joint_3"].coupling["joint_2"] = 1.0;
+  EXPECT_EQ(mapped(robot, {0.0, 0.5, 0.25}), (std::vector<double>{0.0, 0.25, 0.75}));
+}
+
+TEST(Conversions, UnknownJointIsNamedWithTheNearest) {
+  RobotConfig robot;
+  robot.joints["jiont_2"].sign = -1;
+  const auto mapping = JointMapping::make(mapping_config(robot, kJoints), kJoints);
+  ASSERT_FALSE(mapping);
+  EXPECT_NE(mapping.error().message().find("joint_2"), std::string::npos);
+}
+
+TEST(Conversions, SensorKeysReachTheSensorProcess) {
+  SensorConfig sensor;
+  sensor.camera.width = 640;
+  sensor.image = "color";
+  sensor.oni_file = "/a.oni";
+  sensor.loop = true;
+  sensor.depth_unit_um = 100;
+  const auto settings = sensor_settings("eye", sensor);
+  EXPECT_EQ(settings.stream.width, 640);
+  EXPECT_EQ(settings.stream.image, ImageKind::color);
+  EXPECT_EQ(settings.stream.recording, "/a.oni");
+  EXPECT_TRUE(settings.stream.loop);
+  EXPECT_EQ(settings.stream.depth_unit_um, 100);
+}
+
+TEST(Conversions, LinkKeysReachTheClient) {
+  RobotConfig robot;
+  robot.host = "h";
+  robot.byte_order = "little";
+  robot.link.stale_after = Duration(111);
+  robot.link.eviction_pause = Duration(222);
+  const auto settings = link_settings(robot);
+  EXPECT_EQ(settings.byte_order, simple_message::ByteOrder::little);
+  EXPECT_EQ(settings.link.stale_after, Duration(111));
+  EXPECT_EQ(settings.link.eviction_pause, Duration(222));
+}
+
+}  // namespace
+}  // namespace calibrd
