@@ -36,7 +36,8 @@ class WorldFile {
  private:
   WorldFile() = default;
   std::filesystem::path path_;
-  int file_ = -1;  // holds the lock that says the file is owned; the system lets go of it when the process dies
+  int file_ =
+      -1;  // holds the lock that says the file is owned; the system lets go of it when the process dies
   SharedWorld* shared_ = nullptr;
   std::size_t size_ = 0;
 };
