@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "core/registration/cloud_tree.hpp"

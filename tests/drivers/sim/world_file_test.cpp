@@ -121,6 +121,17 @@ TEST(WorldFile, ForeignFileIsRefused) {
   EXPECT_EQ(WorldView::open(empty).error().code, make_error_code(SimError::world_mismatch));
 }
 
+TEST(WorldFile, ASecondSimulatorDoesNotTakeItAway) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "world";
+  auto first = std::make_unique<WorldFile>(*WorldFile::create(path, {}, {}));
+  EXPECT_EQ(WorldFile::create(path, {}, {}).error().code, make_error_code(SimError::world_in_use));
+  EXPECT_TRUE(WorldView::open(path)->alive(monotonic_ns()));
+  first.reset();
+  folder.write("world", "left over by one that was killed");
+  EXPECT_TRUE(WorldFile::create(path, {}, {}));
+}
+
 TEST(WorldFile, UnwritablePlaceIsAnError) {
   EXPECT_EQ(WorldFile::create("/proc/nowhere/world", {}, {}).error().code,
             make_error_code(SimError::world_unwritable));
