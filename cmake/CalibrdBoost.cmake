@@ -1,5 +1,5 @@
-# boost_net: Asio, Beast and JSON from Boost >= 1.81, compiled once. On Debian 12 the system Boost is 1.74
-# (PCL's); scripts/setup.sh unpacks 1.81 headers into .deps/boost. No translation unit may see both.
+# boost_net: Asio, Beast and JSON from Boost >= 1.81, compiled once. On Debian 12 the system's Boost is 1.74, without
+# JSON; scripts/setup.sh unpacks the headers of 1.81 into .deps/boost. No translation unit may see both.
 find_path(CALIBRD_BOOST_INCLUDE boost/json.hpp
   HINTS ${PROJECT_SOURCE_DIR}/.deps/boost/usr/include NO_DEFAULT_PATH)
 find_path(CALIBRD_BOOST_INCLUDE boost/json.hpp)

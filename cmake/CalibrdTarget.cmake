@@ -19,10 +19,12 @@ function(calibrd_library target)
   calibrd_target_defaults(${target})
 endfunction()
 
-# calibrd_executable(name source...): a program in build/<preset>/bin.
+# calibrd_executable(name source...): a program in build/<preset>/bin. It exports nothing of its libraries: weak symbols
+# of our Boost would take the place of those in shared objects that were compiled against the system's.
 function(calibrd_executable target)
   add_executable(${target} ${ARGN})
   calibrd_target_defaults(${target})
+  target_link_options(${target} PRIVATE -Wl,--exclude-libs,ALL)
 endfunction()
 
 # calibrd_test(name LIBS lib... SOURCES source...): a GoogleTest program, each of its tests known to ctest.

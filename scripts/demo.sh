@@ -40,7 +40,17 @@ wait_for() {
   done
 }
 
-free_port() { python3 -c 'import socket; s = socket.create_server(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+# 8080, as the README prints it, or any other port when that one is taken.
+free_port() {
+  python3 -c '
+import socket
+for port in (8080, 0):
+    try:
+        print(socket.create_server(("127.0.0.1", port)).getsockname()[1])
+        break
+    except OSError:
+        pass'
+}
 
 build() {
   scripts/setup.sh

@@ -12,10 +12,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly kTools=(g++ cmake ninja-build pkgconf ccache git ca-certificates curl jq python3)
 readonly kLibraries=(
-  libeigen3-dev libpcl-dev libembree-dev libtbb-dev libnanoflann-dev                     # geometry
-  liburdfdom-dev liburdfdom-headers-dev libassimp-dev libtinyxml2-dev libspng-dev        # files
-  libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libsqlite3-dev libopenni2-dev
-  libgtest-dev libbenchmark-dev liborocos-kdl-dev)                                       # tests, simulator
+  libeigen3-dev libembree-dev libtbb-dev libnanoflann-dev                                # geometry
+  liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
+  libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
+  libgtest-dev liborocos-kdl-dev)                                                         # tests
 readonly kBoostPrefix=.deps/boost
 
 say() { echo "setup: $*" >&2; }
@@ -36,7 +36,7 @@ distribution() {
 
 packages() {
   printf '%s\n' "${kTools[@]}" "${kLibraries[@]}"
-  # On Debian 12 libpcl-dev brings 1.74, which has no Boost.JSON: see need_private_boost.
+  # Debian 12's is 1.74, which has no Boost.JSON: see need_private_boost.
   [ "$1" = debian:12 ] || echo libboost-dev
 }
 
@@ -46,8 +46,8 @@ missing_packages() {
   packages "$1" | grep -vxF -f <(echo "$installed") || true
 }
 
-# Debian 12 has libboost1.81-dev, but it cannot be installed beside libpcl-dev: its headers go to a prefix
-# of our own, where cmake/CalibrdBoost.cmake finds them.
+# Debian 12 has libboost1.81-dev, but it cannot be installed beside packages that need the default one (libpcl-dev,
+# many of ROS): its headers go to a prefix of our own, where cmake/CalibrdBoost.cmake finds them.
 need_private_boost() { [ "$1" = debian:12 ] && [ ! -f $kBoostPrefix/usr/include/boost/json.hpp ]; }
 
 as_root() {

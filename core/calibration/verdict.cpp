@@ -24,6 +24,14 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
+/// Of a rejected pose nothing is known: a small sigma beside it would claim the opposite.
+void forget_uncertainty(CalibrationResult& result) {
+  const CalibrationResult nothing_known;
+  result.covariance = nothing_known.covariance;
+  result.sigma_position_m = nothing_known.sigma_position_m;
+  result.sigma_rotation_rad = nothing_known.sigma_rotation_rad;
+}
+
 class Judge {
  public:
   Judge(const VerdictSettings& settings, CalibrationResult& result) : settings_(settings), result_(result) {}
@@ -43,6 +51,15 @@ class Judge {
     if (r.residual_rms_m > settings_.max_residual_rms_m)
       reject("large_residual",
              "the measured surface stays " + milli(r.residual_rms_m, "mm") + " off the model");
+    if (std::abs(r.correction.offset_m) > settings_.max_offset_m ||
+        std::abs(r.correction.scale - 1) > settings_.max_scale_error)
+      reject("range_implausible", "the range would have to be off by " + milli(r.correction.offset_m, "mm") +
+                                      " and " + milli(r.correction.scale - 1, "per mille") +
+                                      "; check the sensor's intrinsics and the robot model");
+    if (r.joint_zeros.cwiseAbs().maxCoeff() > settings_.max_joint_zero)
+      reject("joint_zero_implausible", "a joint would have to be off by " +
+                                           milli(r.joint_zeros.cwiseAbs().maxCoeff(), "mrad") +
+                                           "; check joint order, signs, zeros and robot model");
     const double edges = share(r.contour.found, r.contour.predicted);
     if (r.contour.predicted > 0 && edges < settings_.min_contour_found)
       reject("contour_not_found",
@@ -95,13 +112,18 @@ void judge(const Refinement& refinement, const VerdictSettings& settings, Calibr
     result.reasons.push_back(
         {"too_few_pixels", "only " + std::to_string(refinement.range.measured) +
                                " robot pixels carry a measurement; bring the robot into view"});
+    forget_uncertainty(result);
     return;
   }
   result.verdict = Verdict::accepted;
   Judge judge(settings, result);
   judge.contradictions(refinement);
   judge.doubts(refinement);
-  if (result.verdict != Verdict::rejected) result.T_base_sensor = refinement.T_base_sensor;
+  if (result.verdict == Verdict::rejected) {
+    forget_uncertainty(result);
+  } else {
+    result.T_base_sensor = refinement.T_base_sensor;
+  }
 }
 
 }  // namespace calibrd

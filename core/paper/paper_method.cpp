@@ -2,56 +2,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/paper/paper_method.hpp"
 
-#include <pcl/filters/voxel_grid.h>
-#include <pcl/registration/icp.h>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <map>
 
+#include "core/registration/cloud_tree.hpp"
 #include "core/virtual_cell/surface_sampling.hpp"
 
 namespace calibrd {
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Points = std::vector<Eigen::Vector3d>;
 
-pcl::PointXYZ to_pcl(const Eigen::Vector3d& p) {
-  const Eigen::Vector3f f = p.cast<float>();
-  return {f.x(), f.y(), f.z()};
-}
-
-Cloud::Ptr thinned(const Cloud::Ptr& cloud, double voxel_m) {
-  const auto leaf = static_cast<float>(voxel_m);
-  pcl::VoxelGrid<pcl::PointXYZ> grid;
-  grid.setInputCloud(cloud);
-  grid.setLeafSize(leaf, leaf, leaf);
-  Cloud::Ptr thin(new Cloud);
-  grid.filter(*thin);
+/// One point, their mean, for all points of a cubic cell.
+Points thinned(const Points& points, double voxel_m) {
+  struct Cell {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+  };
+  std::map<std::array<long, 3>, Cell> cells;
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Array3d index = (p.array() / voxel_m).floor();
+    Cell& cell =
+        cells[{static_cast<long>(index.x()), static_cast<long>(index.y()), static_cast<long>(index.z())}];
+    cell.sum += p;
+    ++cell.count;
+  }
+  Points thin;
+  for (const auto& [index, cell] : cells) thin.emplace_back(cell.sum / cell.count);
   return thin;
 }
 
-/// The virtual measurement: CAD points in the virtual sensor's frame. Fills `region` in the base frame.
-Cloud::Ptr model_cloud(const RobotModel& robot, const View& view, const Pose& T_base_virtual,
-                       const PaperSettings& settings, Eigen::AlignedBox3d& region) {
-  Cloud::Ptr cloud(new Cloud);
+/// The virtual measurement: CAD points in the virtual sensor's frame. Fills `region`, in the base frame.
+Points model_points(const RobotModel& robot, const View& view, const Pose& T_base_virtual,
+                    const PaperSettings& settings, Eigen::AlignedBox3d& region) {
+  Points points;
   const Pose T_virtual_base = T_base_virtual.inverse();
   for (const SurfaceSample& sample :
        sample_surface(robot, view.joint_positions_rad, settings.model_points, settings.seed)) {
     region.extend(sample.point);
-    cloud->push_back(to_pcl(T_virtual_base * sample.point));
+    points.emplace_back(T_virtual_base * sample.point);
   }
-  return cloud;
+  return points;
 }
 
-Cloud::Ptr measured_cloud(const CameraModel& camera, const View& view, const Pose& T_base_virtual,
-                          const Eigen::AlignedBox3d& region) {
-  Cloud::Ptr cloud(new Cloud);
+Points measured_points(const CameraModel& camera, const View& view, const Pose& T_base_virtual,
+                       const Eigen::AlignedBox3d& region) {
+  Points points;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
       const double z = view.depth.depth_m(x, y);
       if (z <= 0) continue;
       const Eigen::Vector3d p_sensor = z * camera.ray(x, y);
-      if (region.contains(T_base_virtual * p_sensor)) cloud->push_back(to_pcl(p_sensor));
+      if (region.contains(T_base_virtual * p_sensor)) points.push_back(p_sensor);
     }
   }
-  return cloud;
+  return points;
+}
+
+struct Matches {
+  Eigen::Matrix3Xd measured, model;
+  double rms_m = 0;
+};
+
+/// Eq. 1: for every measured point, moved by the transform so far, the nearest model point.
+Matches match(const Points& measured, const CloudTree& model, const Pose& T_virtual_real,
+              double max_distance_m) {
+  Points from, to;
+  double squares = 0;
+  for (const Eigen::Vector3d& p : measured) {
+    const auto neighbour = model.nearest(T_virtual_real * p);
+    if (!neighbour || neighbour->distance_m > max_distance_m) continue;
+    from.push_back(p);
+    to.push_back(neighbour->point);
+    squares += neighbour->distance_m * neighbour->distance_m;
+  }
+  const auto count = static_cast<Eigen::Index>(from.size());
+  Matches matches{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count), 0};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    matches.measured.col(i) = from[static_cast<std::size_t>(i)];
+    matches.model.col(i) = to[static_cast<std::size_t>(i)];
+  }
+  if (count > 0) matches.rms_m = std::sqrt(squares / static_cast<double>(count));
+  return matches;
 }
 
 }  // namespace
@@ -59,32 +93,28 @@ Cloud::Ptr measured_cloud(const CameraModel& camera, const View& view, const Pos
 std::optional<PaperFit> fit_by_paper(const RobotModel& robot, const CameraModel& camera, const View& view,
                                      const Pose& guess_T_base_sensor, const PaperSettings& settings) {
   Eigen::AlignedBox3d region;
-  const Cloud::Ptr model =
-      thinned(model_cloud(robot, view, guess_T_base_sensor, settings, region), settings.voxel_m);
-  if (model->empty()) return std::nullopt;
+  const Points all = model_points(robot, view, guess_T_base_sensor, settings, region);
+  if (all.empty()) return std::nullopt;
   region.min().array() -= settings.region_margin_m;
   region.max().array() += settings.region_margin_m;
-  const Cloud::Ptr measured =
-      thinned(measured_cloud(camera, view, guess_T_base_sensor, region), settings.voxel_m);
-  if (measured->size() < 10) return std::nullopt;
-
-  pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
-  icp.setInputSource(measured);
-  icp.setInputTarget(model);
-  icp.setMaxCorrespondenceDistance(settings.max_correspondence_m);
-  icp.setMaximumIterations(settings.max_iterations);
-  icp.setTransformationEpsilon(settings.transformation_epsilon);
-  Cloud aligned;
-  icp.align(aligned);
+  std::vector<Eigen::Vector3f> thin_model;
+  for (const Eigen::Vector3d& p : thinned(all, settings.voxel_m)) thin_model.emplace_back(p.cast<float>());
+  const CloudTree model(std::move(thin_model));
+  const Points measured =
+      thinned(measured_points(camera, view, guess_T_base_sensor, region), settings.voxel_m);
 
   PaperFit fit;
-  fit.converged = icp.hasConverged();
-  fit.rms_m = std::sqrt(icp.getFitnessScore(settings.max_correspondence_m));
-  fit.points = measured->size();
+  fit.points = measured.size();
   Pose T_virtual_real = Pose::Identity();
-  const Eigen::Matrix4d matrix = icp.getFinalTransformation().cast<double>();
-  T_virtual_real.linear() = Eigen::Quaterniond(matrix.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
-  T_virtual_real.translation() = matrix.topRightCorner<3, 1>();
+  for (int i = 0; i < settings.max_iterations && !fit.converged; ++i) {
+    const Matches matches = match(measured, model, T_virtual_real, settings.max_correspondence_m);
+    if (matches.measured.cols() < 10) return std::nullopt;
+    // Eq. 2 to 6 with the directions put right: SVD on matched pairs, centred on their own centroids.
+    const Pose next(Eigen::umeyama(matches.measured, matches.model, false));
+    fit.converged = (next.matrix() - T_virtual_real.matrix()).squaredNorm() < settings.transformation_epsilon;
+    fit.rms_m = matches.rms_m;
+    T_virtual_real = next;
+  }
   fit.T_base_sensor = guess_T_base_sensor * T_virtual_real;
   return fit;
 }

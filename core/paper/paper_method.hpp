@@ -31,7 +31,7 @@ struct PaperFit {
 /// "Automatic Calibration of Industrial Robot and 3D Sensors using Real-Time Simulator": uniform CAD
 /// sampling, region of interest, down-sampling, point-to-point ICP by SVD. Its equations mix directions; used
 /// here is what follows from p_virtual = R p_real + t: T_base_real = T_base_virtual * T_virtual_real, both
-/// clouds centred on their matched pairs in every iteration (PCL does so). One posture. Nothing when the
+/// clouds centred on their matched pairs in every iteration. One posture. Nothing when the
 /// region holds no measured points.
 std::optional<PaperFit> fit_by_paper(const RobotModel& robot, const CameraModel& camera, const View& view,
                                      const Pose& guess_T_base_sensor, const PaperSettings& settings);

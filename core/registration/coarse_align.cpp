@@ -6,31 +6,12 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <memory>
-#include <nanoflann.hpp>
+#include <optional>
+
+#include "core/registration/cloud_tree.hpp"
 
 namespace calibrd {
 namespace {
-
-/// Measured points of one view (sensor frame) and their search tree.
-struct Cloud {
-  std::vector<Eigen::Vector3f> points;
-  // What nanoflann asks for:
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3>;
-
-struct Searchable {
-  std::unique_ptr<Cloud> cloud;
-  std::unique_ptr<Tree> tree;
-};
 
 CameraModel reduced(const CameraModel& camera, int factor) {
   CameraModel small = camera;
@@ -54,24 +35,23 @@ Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const
   return box;
 }
 
-Searchable make_searchable(const RegistrationView& view, const CameraModel& camera,
-                           Eigen::AlignedBox3d region, const CoarseSettings& settings) {
+/// The measured points of one view near the robot, sensor frame.
+CloudTree measured_tree(const RegistrationView& view, const CameraModel& camera, Eigen::AlignedBox3d region,
+                        const CoarseSettings& settings) {
   constexpr int kStride = 3;
   region.min().array() -= settings.crop_margin_m;
   region.max().array() += settings.crop_margin_m;
-  Searchable result{std::make_unique<Cloud>(), nullptr};
+  std::vector<Eigen::Vector3f> points;
   for (int y = 0; y < camera.height; y += kStride) {
     for (int x = 0; x < camera.width; x += kStride) {
       const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
                                    static_cast<std::size_t>(x)];
       if (z < region.min().z() || z > region.max().z() || z <= 0) continue;
       const Eigen::Vector3d p = z * camera.ray(x, y);
-      if (region.contains(p)) result.cloud->points.push_back(p.cast<float>());
+      if (region.contains(p)) points.push_back(p.cast<float>());
     }
   }
-  if (!result.cloud->points.empty())
-    result.tree = std::make_unique<Tree>(3, *result.cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  return result;
+  return CloudTree(std::move(points));
 }
 
 struct Sums {
@@ -80,25 +60,22 @@ struct Sums {
 };
 
 /// Point-to-plane sums of one view at one pose.
-Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, const Searchable& measured,
+Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, const CloudTree& measured,
              const Pose& T_base_sensor, double kernel_m) {
   Sums sums;
-  if (!measured.tree) return sums;
   const Eigen::Matrix3d R = T_base_sensor.linear();
   for (int y = 0; y < prediction.height; ++y) {
     for (int x = 0; x < prediction.width; ++x) {
       const auto i = static_cast<std::size_t>(y * prediction.width + x);
       if (prediction.link[i] < 0) continue;
       const Eigen::Vector3d q = prediction.depth_m[i] * camera.ray(x, y);
-      const Eigen::Vector3f query = q.cast<float>();
-      std::uint32_t nearest = 0;
-      float squared_distance = 0;
-      if (measured.tree->knnSearch(query.data(), 1, &nearest, &squared_distance) == 0) continue;
-      const double distance = std::sqrt(static_cast<double>(squared_distance)) / kernel_m;
+      const auto neighbour = measured.nearest(q);
+      if (!neighbour) continue;
+      const double distance = neighbour->distance_m / kernel_m;
       if (distance >= 1) continue;
       const double weight = (1 - distance * distance) * (1 - distance * distance);
       const Eigen::Vector3d n = prediction.normal[i].cast<double>();
-      const double residual = n.dot(measured.cloud->points[nearest].cast<double>() - q);
+      const double residual = n.dot(neighbour->point - q);
       const Eigen::Vector3d n_base = R * n, u_base = R * q;
       Vector6d jacobian;
       jacobian << -u_base.cross(n_base), -n_base;
@@ -114,12 +91,12 @@ Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, co
 Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera, const Pose& guess,
                   const CoarseSettings& settings) {
   const CameraModel small = reduced(camera, settings.reduction);
-  std::vector<Searchable> measured(views.size());
+  std::vector<std::optional<CloudTree>> measured(views.size());
   std::vector<VirtualMeasurement> predictions(views.size());
   std::vector<Sums> sums(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
     views[v].cell.measure(small, guess, predictions[v]);
-    measured[v] = make_searchable(views[v], camera, bounds_in_sensor(predictions[v], small), settings);
+    measured[v].emplace(measured_tree(views[v], camera, bounds_in_sensor(predictions[v], small), settings));
   });
 
   Pose pose = guess;
@@ -129,7 +106,7 @@ Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera, 
   for (int iteration = 0; iteration < settings.iterations; ++iteration, kernel_m *= shrink) {
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
       views[v].cell.measure(small, pose, predictions[v]);
-      sums[v] = pull_of(predictions[v], small, measured[v], pose, kernel_m);
+      sums[v] = pull_of(predictions[v], small, *measured[v], pose, kernel_m);
     });
     Sums total;
     for (const Sums& s : sums) {

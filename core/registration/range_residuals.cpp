@@ -44,6 +44,29 @@ bool is_rim(const VirtualMeasurement& prediction, int x, int y) {
   return false;
 }
 
+/// Derivative of a pixel's predicted measurement. p_sensor and n: the surface point and normal it sees
+/// (sensor frame).
+ParameterVector jacobian_of(const RegistrationView& view, int link, const Pose& T_base_sensor,
+                            const DepthCorrection& correction, const Eigen::Vector3d& p_sensor,
+                            const Eigen::Vector3d& n) {
+  // The sensor moves by δ, the surface stands: along the pixel's ray the depth changes by -(u×n·δω +
+  // n·δt)/(n·d).
+  const double z = p_sensor.z();
+  const Eigen::Vector3d n_base = T_base_sensor.linear() * n, u_base = T_base_sensor.linear() * p_sensor;
+  const double factor = -correction.slope(z) * z / n.dot(p_sensor);
+  ParameterVector jacobian;
+  jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z), 0.0,
+      -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
+  return jacobian;
+}
+
+/// Tells what a residual is: agreeing, or something in front, or the space behind seen through.
+void count(double residual, double kernel_m, RangeTally& tally) {
+  ++tally.measured;
+  if (residual > kernel_m) ++tally.seen_through;
+  if (residual < -kernel_m) ++tally.occluded;
+}
+
 }  // namespace
 
 void RangeTally::merge(const RangeTally& other) {
@@ -59,7 +82,6 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
                          const CameraModel& camera, const Pose& T_base_sensor,
                          const DepthCorrection& correction, const RangeSettings& settings,
                          NormalEquations& equations, RangeTally& tally, std::vector<RangeSample>* samples) {
-  const Eigen::Matrix3d R = T_base_sensor.linear();
   const int blocks_per_row = camera.width / kBlockSide + 1;
   for (int y = 0; y < camera.height; y += settings.stride) {
     for (int x = 0; x < camera.width; x += settings.stride) {
@@ -74,27 +96,17 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
       if (cos_incidence < settings.min_cos_incidence) continue;
       ++tally.predicted;
       if (view.depth_m[i] <= 0) continue;
-      ++tally.measured;
 
       Observation o;
       o.residual = view.depth_m[i] - correction.measured(z);
-      if (o.residual > settings.kernel_m) ++tally.seen_through;
-      if (o.residual < -settings.kernel_m) ++tally.occluded;
+      count(o.residual, settings.kernel_m, tally);
       o.robust_weight = tukey_weight(o.residual, settings.kernel_m);
       if (o.robust_weight <= 0) continue;
       ++tally.agreeing;
       o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, 1 / camera.fx);
       tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
 
-      // The sensor moves by δ, the surface stands: along the pixel's ray the depth changes by -(u×n·δω +
-      // n·δt)/(n·d).
-      const Eigen::Vector3d n_base = R * n, u_base = R * (z * d);
-      const double factor = -correction.slope(z) / slope;
-      o.jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z),
-          0.0,
-          -factor *
-              view.axes.derivative(prediction.link[i], T_base_sensor.translation() + u_base).transpose() *
-              n_base;
+      o.jacobian = jacobian_of(view, prediction.link[i], T_base_sensor, correction, z * d, n);
       if (samples != nullptr) samples->push_back({o, z});
       equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
     }

@@ -29,6 +29,9 @@ struct Stage {
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
 constexpr int kFullSteps = 5;
+/// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
+/// simulated captures this much larger, squared, than the scatter of residuals alone says.
+constexpr double kModelAllowance = 3;
 
 struct Sums {
   NormalEquations range, contour;
@@ -232,7 +235,7 @@ class Refiner {
     published.leftCols<6>().setIdentity();
     published.rightCols<kMaxJointZeros>() =
         reported_joints_map(views_, predictions_, camera_, result_.T_base_sensor);
-    result_.covariance = published * covariance * published.transpose();
+    result_.covariance = kModelAllowance * published * covariance * published.transpose();
     result_.joint_zero_sigmas = covariance.diagonal().tail<kMaxJointZeros>().cwiseSqrt();
     result_.T_base_sensor =
         perturbed(result_.T_base_sensor, published.rightCols<kMaxJointZeros>() * result_.joint_zeros);

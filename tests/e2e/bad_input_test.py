@@ -74,7 +74,9 @@ class BadInput(CellTest):
     def test_a_broken_mesh(self):
         urdf = self.robot_copy()
         (urdf.parents[1] / "meshes/turret.stl").write_bytes(b"solid nothing")
-        self.expect_refused(self.run_daemon(f"robot.urdf={urdf}"), "turret.stl")
+        # Else package:// would find the whole mesh of the built robot first.
+        search_paths = f"robot.search_paths=['{urdf.parents[2]}']"
+        self.expect_refused(self.run_daemon(f"robot.urdf={urdf}", search_paths), "turret.stl")
 
     def test_an_unknown_joint_is_named_with_the_nearest_one(self):
         self.expect_refused(self.run_daemon("robot.joints.joint_z.sign=-1"), "joint_z")

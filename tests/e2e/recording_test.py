@@ -11,7 +11,7 @@ import tarfile
 import unittest
 import zlib
 
-from cell import BIN, ROBOTS, SENSOR, CellTest, call
+from cell import BIN, SENSOR, CellTest, call
 from poses import axis_turn, difference, multiply, shift
 
 POSTURES = 3
@@ -30,6 +30,7 @@ class Recording(CellTest):
     def record(self):
         """Records from the live cell; leaves the capture's folder, the true pose and a guess off by some."""
         simulator = self.simulate()
+        simulator.hurry()
         daemon = self.serve(simulator).wait_ready()
         answer = call(daemon.port, "POST", f"/api/v1/sensors/{SENSOR}/captures",
                       {"postures": POSTURES, "timeout_s": 120, "note": "end to end"}, timeout_s=150)
@@ -45,8 +46,8 @@ class Recording(CellTest):
         simulator.stop()
 
     def calibrate(self, *options):
-        return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--models", ROBOTS,
-                               "--guess", self.guess, *options], capture_output=True, text=True, timeout=120, check=False)
+        return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--guess", self.guess, *options],
+                              capture_output=True, text=True, timeout=120, check=False)
 
     def expect_refused(self, *words: str):
         ended = self.calibrate()

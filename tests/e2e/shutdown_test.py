@@ -64,6 +64,7 @@ class Shutdown(CellTest):
         self.expect_ends(daemon)
 
     def test_while_it_computes(self):
+        self.simulator.hurry()
         daemon = self.serve(self.simulator).wait_ready()
         location = daemon.start_calibration()
         wait_until("it computes", lambda: daemon.json(location)["status"] == "running", 120, period_s=0.005)

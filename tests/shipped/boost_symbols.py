@@ -3,10 +3,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails when two Boosts meet in one program.
 
-On Debian 12 PCL is compiled against Boost 1.74 and everything else against 1.81. The linker keeps one of
-two weak symbols of the same name, without a word, whichever Boost it came from. So no object may see both
-Boosts, and no weak symbol that speaks of boost may be defined on both sides. The shared objects of PCL
-count to the side of the system's Boost: a weak symbol of a program takes the place of theirs.
+On Debian 12 the system's Boost is 1.74, and calibrd is compiled against 1.81 in a prefix of its own. The linker
+keeps one of two weak symbols of the same name, without a word, whichever Boost it came from. So
+- no object may see both Boosts,
+- no weak symbol that speaks of boost may be defined by objects of both sides,
+- no program may export such a symbol that a shared object it loads defines as well (as PCL's would): it would take
+  the other's place.
 
 usage: boost_symbols.py BUILD_DIRECTORY NINJA
 """
@@ -68,11 +70,19 @@ def symbols_of(objects: Iterable[str], build: Path) -> set[str]:
                          if (build / name).is_file()))
 
 
-def system_libraries(build: Path) -> set[str]:
-    """The shared objects of PCL that the programs of this build load."""
-    programs = [path for path in (build / "bin").glob("*") if path.is_file()]
-    loaded = "\n".join(run("ldd", str(program)) for program in programs)
-    return set(re.findall(r"=> (\S*/libpcl_\S+)", loaded))
+def exported_symbols(binary: str) -> set[str]:
+    return weak_boost_symbols(run("nm", "-D", "--defined-only", binary))
+
+
+def displaced_by(program: Path) -> set[str]:
+    """The symbols of shared objects in whose place the program would put its own."""
+    exported = exported_symbols(str(program))
+    libraries = re.findall(r"=> (/\S+)", run("ldd", str(program))) if exported else []
+    return exported.intersection(set().union(*map(exported_symbols, libraries)))
+
+
+def readable(symbols: set[str]) -> list[str]:
+    return run("c++filt", *sorted(symbols)).splitlines() if symbols else []
 
 
 def check(build: Path, ninja: str) -> tuple[list[str], str]:
@@ -80,16 +90,13 @@ def check(build: Path, ninja: str) -> tuple[list[str], str]:
     use = sort_objects(run(ninja, "-t", "deps", cwd=build))
     if not use.private:
         return [], f"one Boost only: {len(use.system)} objects use the system's, none a private one"
-    libraries = system_libraries(build)
-    system = symbols_of(use.system, build)
-    for library in libraries:
-        system |= weak_boost_symbols(run("nm", "-D", "--defined-only", library))
-    private = symbols_of(use.private, build)
+    programs = [path for path in sorted((build / "bin").glob("*")) if path.is_file()]
+    system, private = symbols_of(use.system, build), symbols_of(use.private, build)
     found = [f"{name}: sees both Boosts" for name in use.both]
-    found += [f"weak on both sides: {name}" for name in run("c++filt", *sorted(system & private)).splitlines()
-              if system & private]
-    return found, (f"{len(use.system)} objects and {len(libraries)} libraries use the system's Boost "
-                   f"({len(system)} weak symbols), {len(use.private)} objects the private one ({len(private)})")
+    found += [f"weak on both sides: {name}" for name in readable(system & private)]
+    found += [f"{path.name} exports over a shared object: {name}" for path in programs for name in readable(displaced_by(path))]
+    return found, (f"{len(use.system)} objects use the system's Boost ({len(system)} weak symbols), {len(use.private)} "
+                   f"the private one ({len(private)}); {len(programs)} programs")
 
 
 def main() -> int:

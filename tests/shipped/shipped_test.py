@@ -9,7 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from boost_symbols import sort_objects, symbols_of, weak_boost_symbols
+from boost_symbols import displaced_by, sort_objects, symbols_of, weak_boost_symbols
 from linked_libraries import complaints, shipped_binaries
 
 DEPS = """a.o: #deps 2, deps mtime 1 (VALID)
@@ -27,6 +27,20 @@ c.o: #deps 2, deps mtime 1 (VALID)
 d.o: #deps 1, deps mtime 1 (VALID)
     ../d.cpp
 """
+
+
+VERSION = "_ZN5boost7versionEv"
+
+
+def gcc(folder: str, *arguments: str) -> None:
+    subprocess.run(["g++", "-fPIC", *arguments], cwd=folder, check=True)
+
+
+def compile_boost_user(folder: str, name: str, version: int) -> None:
+    """An object with a function `name` that calls an inline function of namespace boost."""
+    Path(folder, f"{name}.cpp").write_text(f"namespace boost {{ inline int version() {{ return {version}; }} }}\n"
+                                           f"int {name}() {{ return boost::version(); }}\n")
+    gcc(folder, "-c", f"{name}.cpp")
 
 
 class LinkedLibraries(unittest.TestCase):
@@ -59,11 +73,23 @@ class BoostSymbols(unittest.TestCase):
 
     def test_finds_a_weak_symbol_that_two_objects_share(self):
         with tempfile.TemporaryDirectory() as folder:
-            for name, value in (("a", 74), ("b", 81)):
-                code = f"namespace boost {{ inline int version() {{ return {value}; }} }} int {name}() {{ return boost::version(); }}"
-                subprocess.run(["c++", "-x", "c++", "-c", "-", "-o", f"{folder}/{name}.o"], input=code, text=True, check=True)
+            for name, version in (("a", 74), ("b", 81)):
+                compile_boost_user(folder, name, version)
             shared = symbols_of(["a.o"], Path(folder)) & symbols_of(["b.o"], Path(folder))
-            self.assertEqual(shared, {"_ZN5boost7versionEv"})
+            self.assertEqual(shared, {VERSION})
+
+    def test_finds_a_program_that_puts_its_boost_in_the_place_of_a_library_s(self):
+        with tempfile.TemporaryDirectory() as folder:
+            compile_boost_user(folder, "theirs", 74)
+            compile_boost_user(folder, "ours", 81)
+            gcc(folder, "-shared", "theirs.o", "-o", "libtheirs.so")
+            subprocess.run(["ar", "rcs", "libours.a", "ours.o"], cwd=folder, check=True)
+            Path(folder, "main.cpp").write_text("int theirs(); int ours(); int main() { return theirs() + ours(); }")
+            link = ("main.cpp", "-L.", "-lours", "-ltheirs", f"-Wl,-rpath,{folder}")
+            gcc(folder, *link, "-o", "open")
+            gcc(folder, *link, "-o", "closed", "-Wl,--exclude-libs,ALL")
+            self.assertEqual(displaced_by(Path(folder, "open")), {VERSION})
+            self.assertEqual(displaced_by(Path(folder, "closed")), set())
 
 
 if __name__ == "__main__":

@@ -17,7 +17,8 @@ namespace calibrd::sim {
 
 /// The simulated robot controller: a TCP server on 127.0.0.1 that streams as MotoROS does. It sends from the
 /// moment a client is there, one send() per message, never reads, holds four clients and throws out the one
-/// in slot 0 for a fifth. All calls and all work on the thread that runs `io`.
+/// in slot 0 for a fifth. All calls and all work on the thread that runs `io`, which must not run on after
+/// this object is gone.
 class ControllerServer {
  public:
   using WorldSource = std::function<const WorldState&()>;

@@ -4,7 +4,6 @@
 // into.
 #include <array>
 #include <condition_variable>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -112,7 +111,7 @@ class SimDriver final : public oni::driver::DriverBase {
   void crash_where_told(const WorldState& state) {
     const std::lock_guard lock(mutex_);
     for (const auto& [device, crashes_at_opening] : open_)
-      if (state.sensors[device->sensor()].crashes > crashes_at_opening) std::raise(SIGSEGV);
+      if (state.sensors[device->sensor()].crashes > crashes_at_opening) std::abort();
   }
 
   WorldWatch watch_;

@@ -47,7 +47,7 @@ struct SimulatedCapture {
   std::vector<CheckPoint> check_points;
 };
 
-/// Records one random cell. The same seed, robot and options give the same recording on every machine.
+/// Records one random cell. The same seed, robot and options give the same recording.
 /// `tables`: of the sensor's camera, made once for any number of recordings. Safe to call from several
 /// threads. Errors: no_free_posture, no_view_of_robot.
 Result<SimulatedCapture> simulate_capture(const Robot& robot, std::uint64_t seed,

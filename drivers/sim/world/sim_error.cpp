@@ -28,6 +28,8 @@ const char* text(SimError error) {
       return "found no posture clear of the cell; move the objects away from the robot";
     case SimError::world_unwritable:
       return "the shared world file cannot be written; name a writable place with --world-file";
+    case SimError::world_in_use:
+      return "another simulator runs with this world file; end it, or name another file with --world-file";
     case SimError::world_unreadable:
       return "there is no running simulator behind this world file; start calibrd-sim and set "
              "CALIBRD_SIM_WORLD";

@@ -18,6 +18,7 @@ enum class SimError {
   description_invalid,
   no_free_posture,
   world_unwritable,
+  world_in_use,
   world_unreadable,
   world_mismatch,
   cannot_listen,

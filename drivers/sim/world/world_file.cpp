@@ -3,6 +3,7 @@
 #include "drivers/sim/world/world_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -51,24 +52,29 @@ struct Descriptor {
   }
 };
 
-void* map_file(const std::filesystem::path& path, std::size_t size) {
-  const Descriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644)};
-  if (file.number < 0 || ::posix_fallocate(file.number, 0, static_cast<off_t>(size)) != 0) return MAP_FAILED;
-  return ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.number, 0);
+bool is_owned(const std::filesystem::path& path) {
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  return file.number >= 0 && ::flock(file.number, LOCK_EX | LOCK_NB) != 0;
 }
 
 }  // namespace
 
 Result<WorldFile> WorldFile::create(const std::filesystem::path& path, const Cell& cell,
                                     const WorldState& state) {
+  if (is_owned(path)) return sim_error(SimError::world_in_use, path.string());
   const std::vector<std::byte> bytes = to_bytes(cell);
   const std::filesystem::path draft = path.string() + "." + std::to_string(::getpid());
   std::error_code ignored;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
   std::filesystem::remove(draft, ignored);
   WorldFile world;
+  world.path_ = draft;
   world.size_ = sizeof(SharedWorld) + bytes.size();
-  void* memory = map_file(draft, world.size_);
+  world.file_ = ::open(draft.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (world.file_ < 0 || ::flock(world.file_, LOCK_EX | LOCK_NB) != 0 ||
+      ::posix_fallocate(world.file_, 0, static_cast<off_t>(world.size_)) != 0)
+    return sim_error(SimError::world_unwritable, path.string());
+  void* memory = ::mmap(nullptr, world.size_, PROT_READ | PROT_WRITE, MAP_SHARED, world.file_, 0);
   if (memory == MAP_FAILED) return sim_error(SimError::world_unwritable, path.string());
   world.shared_ = new (memory) SharedWorld{};
   world.shared_->magic = kMagic;
@@ -85,16 +91,20 @@ Result<WorldFile> WorldFile::create(const std::filesystem::path& path, const Cel
 }
 
 WorldFile::WorldFile(WorldFile&& other) noexcept
-    : path_(std::move(other.path_)), shared_(std::exchange(other.shared_, nullptr)), size_(other.size_) {
-  other.path_.clear();
-}
+    : path_(std::move(other.path_)),
+      file_(std::exchange(other.file_, -1)),
+      shared_(std::exchange(other.shared_, nullptr)),
+      size_(other.size_) {}
 
 WorldFile::~WorldFile() {
-  if (shared_ == nullptr) return;
-  beat(monotonic_ns() - 2 * kBeatLost_ns);  // tells readers at once
-  ::munmap(shared_, size_);
+  if (file_ < 0) return;
+  if (shared_ != nullptr) {
+    beat(monotonic_ns() - 2 * kBeatLost_ns);  // tells readers at once
+    ::munmap(shared_, size_);
+  }
   std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(path_, ignored);
+  ::close(file_);
 }
 
 void WorldFile::publish(const WorldState& state) {

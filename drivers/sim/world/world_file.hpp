@@ -22,7 +22,7 @@ struct SharedWorld;
 /// thread.
 class WorldFile {
  public:
-  /// Replaces the file at `path`. Errors: world_unwritable.
+  /// Replaces the file at `path`, unless a living simulator owns it. Errors: world_unwritable, world_in_use.
   static Result<WorldFile> create(const std::filesystem::path& path, const Cell& cell,
                                   const WorldState& state);
   ~WorldFile();
@@ -36,6 +36,8 @@ class WorldFile {
  private:
   WorldFile() = default;
   std::filesystem::path path_;
+  int file_ =
+      -1;  // holds the lock that says the file is owned; the system lets go of it when the process dies
   SharedWorld* shared_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -82,5 +82,24 @@ TEST(CheckPose, SaysNothingOfAnEmptyFrame) {
   EXPECT_FALSE(check_pose(cell, ideal_kinect2(), view, true_T_base_sensor(), {}).enough_evidence);
 }
 
+TEST(CheckPose, SaysNothingOfAHandfulOfPixels) {
+  View view = render_views(1)[0];
+  std::ranges::fill(view.depth.raw.begin(), view.depth.raw.end() - 160 * 512,
+                    std::uint16_t{0});  // the foot is left
+  std::ranges::fill(view.depth.raw.end() - 150 * 512, view.depth.raw.end(), std::uint16_t{0});
+  VirtualCell cell(test_arm());
+  const PoseCheck check = check_pose(cell, ideal_kinect2(), view, true_T_base_sensor(), {});
+  EXPECT_GT(check.robot_pixels, 0U);
+  EXPECT_FALSE(check.enough_evidence);
+  EXPECT_FALSE(check.agrees);
+}
+
+TEST(CheckPose, DisagreesFourCentimetresAcrossTheLineOfSight) {
+  for (const double x : {0.04, -0.04}) {
+    const Pose moved = true_T_base_sensor() * Pose(Eigen::Translation3d(x, 0, 0));
+    EXPECT_FALSE(checked(moved, cluttered()).agrees) << checked(moved, cluttered()).agreement;
+  }
+}
+
 }  // namespace
 }  // namespace calibrd

@@ -79,7 +79,9 @@ INSTANTIATE_TEST_SUITE_P(, OtherSimulated,
                                          "cell_k10_2", "field_k10_1", "field_k10_2"),
                          [](const auto& test) { return test.param; });
 
-TEST_P(OtherSimulated, DISABLED_AreWithinTheirClaimsWhenAccepted) {
+TEST_P(OtherSimulated, AreWithinTheirClaimsWhenAccepted) {
+  // With joint zeros off, the pose that is right for the reported joints is not the base's: other truth.
+  if (std::string_view(GetParam()).starts_with("field")) GTEST_SKIP() << "field captures are judged by their check points";
   if (result.verdict != Verdict::accepted) return;
   EXPECT_LT(error.dot(result.covariance.ldlt().solve(error)), 38.3) << summary();  // once in a million
 }

@@ -36,7 +36,7 @@ NormalEquations example(std::size_t count, double shared_sigma, std::uint64_t se
 
 Matrix6d covariance_of(const NormalEquations& equations) {
   const ParameterMatrix information = equations.information().selfadjointView<Eigen::Lower>();
-  return pose_covariance(information, equations);
+  return parameter_covariance(information, equations).topLeftCorner<6, 6>();
 }
 
 Matrix6d model_covariance(const NormalEquations& equations) {

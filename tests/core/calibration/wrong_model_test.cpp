@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// Wrong poses and wrong claims that the verdict lets pass today. Run them with
-// --gtest_also_run_disabled_tests.
+// Wrong intrinsics, wrong joint zeros: what the verdict must not let pass as good, and what results may claim.
 #include "tests/core/calibration/calibrated.hpp"
 
 namespace calibrd {
@@ -18,7 +17,7 @@ double squared_sigmas(const CalibrationResult& result) {
 // narrow).
 class WrongFocalLength : public testing::TestWithParam<double> {};
 
-TEST_P(WrongFocalLength, DISABLED_IsNotServedAsGood) {
+TEST_P(WrongFocalLength, IsNotServedAsGood) {
   for (const bool images : {false, true}) {
     SceneSettings scene;
     scene.images = images;
@@ -39,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(, WrongFocalLength, testing::Values(0.9, 1.1, 1.25), []
 // A small joint zero error bends the whole fit without making outliers.
 class JointZeroOff : public testing::TestWithParam<std::tuple<int, double>> {};
 
-TEST_P(JointZeroOff, DISABLED_IsNotServedAsGood) {
+TEST_P(JointZeroOff, IsNotServedAsGood) {
   const auto [joint, degrees] = GetParam();
   std::vector<View> views = render_views(3);
   for (View& view : views) view.joint_positions_rad[static_cast<std::size_t>(joint - 1)] += degrees * kDegree;
@@ -54,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(, JointZeroOff,
                                   "Millidegrees";
                          });
 
-TEST(Claims, DISABLED_OfOnePostureWithItsImageCoverTheError) {
+TEST(Claims, OfOnePostureWithItsImageCoverTheError) {
   SceneSettings scene;
   scene.images = true;
   double mean = 0;
@@ -65,7 +64,7 @@ TEST(Claims, DISABLED_OfOnePostureWithItsImageCoverTheError) {
   EXPECT_LT(mean, 15);  // 6 is expected
 }
 
-TEST(Claims, DISABLED_OfARejectedResultAreLarge) {
+TEST(Claims, OfARejectedResultAreLarge) {
   Pose away = true_T_base_sensor();
   away.linear() = away.linear() * exp_so3({0, 3.1, 0});
   const CalibrationResult result = calibrated(render_views(1), {}, away);

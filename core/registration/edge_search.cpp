@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/registration/edge_search.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace calibrd {
+namespace {
+
+constexpr double kSampleStep_px = 0.5;
+
+/// Grey value between pixels; `p` lies inside the image by the caller's margin.
+float bilinear(const std::vector<float>& image, int width, const Eigen::Vector2d& p) {
+  const auto x = static_cast<int>(p.x()), y = static_cast<int>(p.y());
+  const auto fx = static_cast<float>(p.x() - x), fy = static_cast<float>(p.y() - y);
+  const float* row = image.data() + static_cast<std::ptrdiff_t>(y) * width + x;
+  return (1 - fy) * ((1 - fx) * row[0] + fx * row[1]) + fy * ((1 - fx) * row[width] + fx * row[width + 1]);
+}
+
+/// Grey values along the normal, kSampleStep_px apart, `reach` samples to both sides of the contour.
+std::optional<std::vector<float>> sample_profile(const RegistrationView& view, const CameraModel& camera,
+                                                 const ContourPoint& point, int reach) {
+  std::vector<float> grey(static_cast<std::size_t>(2 * reach + 1));
+  for (int k = -reach; k <= reach; ++k) {
+    const Eigen::Vector2d p = point.pixel + kSampleStep_px * k * point.outward;
+    if (p.x() < 1 || p.y() < 1 || p.x() >= camera.width - 2 || p.y() >= camera.height - 2)
+      return std::nullopt;
+    grey[static_cast<std::size_t>(k + reach)] = bilinear(view.image, camera.width, p);
+  }
+  return grey;
+}
+
+/// What the image should show along the normal, blurred as it blurs: shares of light that are constant on the
+/// robot, that fall with the cosine of incidence (active illumination dims a round limb towards its rim,
+/// which moves the steepest step up to a pixel inwards), and that come from beyond.
+class ProfileModel {
+ public:
+  static constexpr int kBases = 3;
+  using Row = Eigen::Matrix<double, 1, kBases>;
+
+  ProfileModel(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
+               const ContourPoint& point, double reach_px)
+      : reach_(static_cast<int>(std::ceil((reach_px + kBlurReach_px) / kFine_px))) {
+    std::vector<Row> sharp;
+    const float rim = static_cast<float>(point.p_sensor.z());
+    for (int k = -reach_; k <= reach_; ++k) {
+      const Eigen::Vector2d p = point.pixel + kFine_px * (k + 0.5) * point.outward;
+      const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
+      Row row(0, 0, 1);
+      if (k < 0) {
+        const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
+        if (!beyond(hit.depth_m, rim))
+          row << 1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0;
+      }
+      sharp.push_back(row);
+    }
+    blur(sharp);
+  }
+
+  /// The bases at a distance (px) from the contour, outward positive.
+  Row at(double distance_px) const {
+    const double place = distance_px / kFine_px + reach_ - 0.5;
+    const auto k = std::clamp(static_cast<int>(place), 0, static_cast<int>(blurred_.size()) - 2);
+    const double share = place - k;
+    return (1 - share) * blurred_[static_cast<std::size_t>(k)] +
+           share * blurred_[static_cast<std::size_t>(k) + 1];
+  }
+
+ private:
+  static constexpr double kFine_px = 0.25;
+  static constexpr double kBlur_px =
+      0.78;  // a pixel's width, prepare_views' smoothing and bilinear sampling together
+  static constexpr double kBlurReach_px = 2.5;
+
+  void blur(const std::vector<Row>& sharp) {
+    const int radius = static_cast<int>(kBlurReach_px / kFine_px);
+    std::vector<double> kernel;
+    for (int k = -radius; k <= radius; ++k)
+      kernel.push_back(std::exp(-0.5 * std::pow(k * kFine_px / kBlur_px, 2)));
+    const int last = static_cast<int>(sharp.size()) - 1;
+    for (int i = 0; i <= last; ++i) {
+      Row sum = Row::Zero();
+      double weight = 0;
+      for (int k = -radius; k <= radius; ++k) {
+        sum += kernel[static_cast<std::size_t>(k + radius)] *
+               sharp[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+        weight += kernel[static_cast<std::size_t>(k + radius)];
+      }
+      blurred_.push_back(sum / weight);
+    }
+  }
+
+  int reach_;
+  std::vector<Row> blurred_;
+};
+
+/// Squared misfit of the profile against the model moved outward by `shift_px`, the three shares of light
+/// fitted.
+double misfit(const std::vector<float>& grey, int reach, const ProfileModel& model, double shift_px) {
+  Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double squares = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    const ProfileModel::Row row = model.at(kSampleStep_px * k - shift_px);
+    const double value = grey[static_cast<std::size_t>(k + reach)];
+    normal.noalias() += row.transpose() * row;
+    right += value * row.transpose();
+    squares += value * value;
+  }
+  return std::max(squares - right.dot(normal.ldlt().solve(right)), 0.0);
+}
+
+double variation(const std::vector<float>& grey) {
+  double sum = 0, squares = 0;
+  for (const double value : grey) {
+    sum += value;
+    squares += value * value;
+  }
+  return squares - sum * sum / static_cast<double>(grey.size());
+}
+
+}  // namespace
+
+std::optional<Edge> find_step(const RegistrationView& view, const CameraModel& camera,
+                              const ContourPoint& point, const ContourSettings& settings) {
+  const int half = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px));
+  const int reach = half + 2;  // two more on each side for the slope
+  const auto grey = sample_profile(view, camera, point, reach);
+  if (!grey) return std::nullopt;
+  const auto slope = [&](int k) {  // over two pixels
+    return std::abs((*grey)[static_cast<std::size_t>(k + 2)] - (*grey)[static_cast<std::size_t>(k - 2)]);
+  };
+  const auto threshold = static_cast<float>(settings.min_contrast * view.image_noise);
+  std::optional<Edge> best;
+  double best_score = 0;
+  for (int k = 3; k + 3 < static_cast<int>(grey->size()); ++k) {
+    const float here = slope(k), before = slope(k - 1), after = slope(k + 1);
+    if (here < threshold || here < before || here <= after) continue;
+    const double bend = before - 2.0 * here + after;
+    const double top = bend < 0 ? 0.5 * (before - after) / bend : 0.0;
+    const double distance = kSampleStep_px * (k - reach + top);
+    const double score =
+        here * std::exp(-2 * distance * distance / (settings.search_px * settings.search_px));
+    if (score > best_score) {
+      best_score = score;
+      best = Edge{distance, settings.sigma_px};
+    }
+  }
+  return best;
+}
+
+std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel& camera,
+                                const Pose& T_base_sensor, const ContourPoint& point,
+                                const ContourSettings& settings) {
+  constexpr double kWindow_px = 4;
+  constexpr double kShiftStep_px = 0.5;
+  constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
+  constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
+  const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
+  const auto grey = sample_profile(view, camera, point, reach);
+  if (!grey) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(*grey);
+  if (high - low < settings.min_contrast * view.image_noise) return std::nullopt;
+  const ProfileModel model(view, camera, T_base_sensor, point, kWindow_px + settings.search_px);
+  const int shifts = static_cast<int>(settings.search_px / kShiftStep_px);
+  std::vector<double> costs;
+  for (int k = -shifts; k <= shifts; ++k) costs.push_back(misfit(*grey, reach, model, kShiftStep_px * k));
+  const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
+  if (best == 0 || best + 1 == static_cast<int>(costs.size())) return std::nullopt;
+  const double before = costs[static_cast<std::size_t>(best - 1)],
+               here = costs[static_cast<std::size_t>(best)],
+               after = costs[static_cast<std::size_t>(best + 1)];
+  const double bend = before - 2 * here + after;
+  if (here > kWorstFit * variation(*grey) || bend <= 0) return std::nullopt;
+  // Least squares: variance of the move = 2 s² / curvature of the cost, s² from the misfit. Smoothing and
+  // half-pixel sampling leave about a third of the samples independent.
+  constexpr double kDependence = 3;
+  const double freedom = static_cast<double>(grey->size()) / kDependence - 2;
+  const double variance = 2 * here / std::max(freedom, 1.0) * kShiftStep_px * kShiftStep_px / bend;
+  return Edge{kShiftStep_px * (best - shifts + 0.5 * (before - after) / bend),
+              std::hypot(kModelFloor_px, std::sqrt(variance))};
+}
+
+}  // namespace calibrd
