@@ -16,10 +16,15 @@ namespace {
 
 constexpr std::string_view kEnvironmentPrefix = "CALIBRD_";
 
-bool matches(const Setting& setting, const std::vector<std::string>& path) {
-  return setting.path.size() == path.size() &&
+/// The path begins as the setting's, whose stars stand for any name.
+bool begins_like(const std::vector<std::string>& path, const Setting& setting) {
+  return path.size() <= setting.path.size() &&
          std::equal(path.begin(), path.end(), setting.path.begin(),
                     [](const auto& part, const auto& wanted) { return wanted == "*" || part == wanted; });
+}
+
+bool matches(const Setting& setting, const std::vector<std::string>& path) {
+  return path.size() == setting.path.size() && begins_like(path, setting);
 }
 
 Names names_in(const Setting& setting, const std::vector<std::string>& path) {
@@ -52,7 +57,21 @@ Error unknown_key(const RawEntry& entry) {
                entry.origin + ": " + join_path(entry.path) + " is a section, not a key"};
 }
 
+/// A section without keys counts: a sensor in it is there, and lacks what it needs.
+Status enter_section(const RawEntry& entry, Config& config) {
+  const auto& path = entry.path;
+  const auto is_in_section = [&](const Setting& setting) {
+    return path.size() < setting.path.size() && begins_like(path, setting);
+  };
+  if (std::none_of(settings_table().begin(), settings_table().end(), is_in_section))
+    return unknown_key(entry);
+  if (path.size() == 2 && path[0] == "sensors") config.sensors[path[1]];
+  if (path.size() == 3 && path[1] == "joints") config.robot.joints[path[2]];
+  return Done{};
+}
+
 Status apply(const RawEntry& entry, LoadedConfig& loaded) {
+  if (entry.value.is_empty_table) return enter_section(entry, loaded.config);
   const auto& table = settings_table();
   const auto setting =
       std::find_if(table.begin(), table.end(), [&](const auto& s) { return matches(s, entry.path); });

@@ -23,6 +23,7 @@ struct LocatedEntry {
 RawValue raw_value_of(const toml::node& node, const std::filesystem::path& folder) {
   RawValue value;
   value.folder = folder;
+  value.is_empty_table = node.is_table();
   if (const auto* array = node.as_array()) {
     std::vector<RawValue> elements;
     for (const auto& element : *array) elements.push_back(raw_value_of(element, folder));

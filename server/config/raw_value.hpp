@@ -17,6 +17,7 @@ namespace calibrd {
 struct RawValue {
   std::variant<std::string, bool, std::int64_t, double, std::vector<RawValue>> data;
   std::optional<std::string> text;  ///< as written, where it came from the environment or the command line
+  bool is_empty_table = false;      ///< a section without keys
   std::filesystem::path folder;     ///< what a relative path in it is relative to
 };
 

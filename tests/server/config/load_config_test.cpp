@@ -123,6 +123,13 @@ TEST_F(LoadConfig, EmptyFileIsAFileWithoutKeys) {
   EXPECT_NE(failure("").find("robot.urdf"), std::string::npos) << failure("");
 }
 
+TEST_F(LoadConfig, SectionWithoutKeysIsASectionAllTheSame) {
+  EXPECT_EQ(failure(std::string(kSmallest) + "[server]\n[log]\n"), "");
+  EXPECT_NE(failure(std::string(kSmallest) + "[sevrer]\n").find("did you mean 'server'"), std::string::npos);
+  EXPECT_NE(failure(std::string(kSmallest) + "[sensors.a]\n").find("sensors.a.fx"), std::string::npos);
+  EXPECT_NE(failure(std::string(kSmallest) + "[server.port]\n"), "");
+}
+
 TEST_F(LoadConfig, MissingNeededKeyIsNamed) {
   EXPECT_NE(failure("[robot]\nhost = \"h\"\n").find("robot.urdf"), std::string::npos);
   EXPECT_NE(failure(std::string(kSmallest) + "[sensors.a]\nfx = 1\n").find("sensors.a.fy"),
