@@ -85,6 +85,7 @@ class HttpServer::Impl {
     thread_.join();
     workers_->stop();
     workers_->join();
+    for (auto& session : sessions_) session.close();  // those that did not end within the grace
   }
 
   std::uint16_t port() const { return port_; }

@@ -64,7 +64,8 @@ bool wants_continue(const http::request<http::string_body>& message) {
 }  // namespace
 
 asio::awaitable<void> Session::run() {
-  while (!context_.stopping && co_await await_request()) {
+  while (!context_.stopping) {  // no && with co_await: GCC 12 evaluates the latter whatever the former says
+    if (!co_await await_request()) break;
     Parser parser;
     const auto failure = co_await read(parser);
     if (failure) {
@@ -84,7 +85,7 @@ asio::awaitable<void> Session::refuse() {
 }
 
 void Session::end_when_idle() {
-  if (idle_) stream_.close();
+  if (idle_) close();
 }
 
 /// Waits, patiently, for the first bytes of a request. False: the connection has ended.

@@ -33,6 +33,7 @@ class Session {
 
   /// Ends the connection now if no request is under way, else after its answer.
   void end_when_idle();
+  void close() { stream_.close(); }
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;

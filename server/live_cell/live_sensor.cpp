@@ -194,6 +194,8 @@ api::SensorReport LiveSensor::report() const {
   report.id = settings_.id;
   report.health = name_of(health.state);
   report.reason = health.reason;
+  if (health.state == SensorHealth::State::starting && health.reason.empty())
+    report.reason = "the device is being opened; this can take some seconds";
   report.device = health.device;
   report.notice = health.notice;
   report.frames = health.frames;

@@ -171,6 +171,13 @@ TEST_F(LoadConfig, RecordingAndDeviceExcludeEachOther) {
   EXPECT_NE(text.find("exclude each other"), std::string::npos) << text;
 }
 
+TEST_F(LoadConfig, ConfigurationsOfTheRepositoryAreGood) {
+  for (const auto* name : {"calibrd.toml", "demo.toml"}) {
+    const auto loaded = load_config({std::filesystem::path(CALIBRD_SOURCE_DIR "/config") / name, {}, {}});
+    EXPECT_TRUE(loaded) << loaded.error().message();
+  }
+}
+
 TEST_F(LoadConfig, SensorIdMustFitAUrl) {
   EXPECT_NE(failure(std::string(kSmallest) + "[sensors.\"a/b\"]\nfx = 1\nfy = 1\ncx = 1\ncy = 1\n")
                 .find("an id has"),
