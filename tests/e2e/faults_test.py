@@ -9,8 +9,9 @@ from cell import SENSOR, CellTest, free_port, wait_until
 
 
 class Faults(CellTest):
-    def expect_dependency(self, daemon, name: str, ready: bool, timeout_s: float = 20.0) -> dict:
-        """Waits for the state of one dependency; what is not ready must say why and what to do."""
+    def expect_dependency(self, daemon, name: str, ready: bool, timeout_s: float = 45.0) -> dict:
+        """Waits for the state of one dependency; what is not ready must say why and what to do. The time allows for
+        the 30 s that the robot link stays away after two quick evictions."""
         def find():
             listed = daemon.get("/readyz?verbose").json()["dependencies"]
             found = next(d for d in listed if d["name"] == name)
