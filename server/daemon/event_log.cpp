@@ -23,8 +23,9 @@ void log_calibration(const api::CalibrationReport& calibration) {
   const auto verdict =
       calibration.result ? std::string(", ") + api::name_of(calibration.result->verdict) : "";
   const auto level = calibration.status == api::JobStatus::failed ? spdlog::level::warn : spdlog::level::info;
-  spdlog::log(level, "sensor {}: calibration {} {}{}. {}", calibration.sensor_id, calibration.id,
-              api::name_of(calibration.status), verdict, calibration.message);
+  const auto message = calibration.message.empty() ? "" : ". " + calibration.message;
+  spdlog::log(level, "sensor {}: calibration {} {}{}{}", calibration.sensor_id, calibration.id,
+              api::name_of(calibration.status), verdict, message);
 }
 
 void log_pose(const api::PoseReport& pose) {
