@@ -66,6 +66,15 @@ CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel&
   return result;
 }
 
+std::vector<JointZero> named_zeros(const RobotModel& robot, const Refinement& refined) {
+  std::vector<JointZero> zeros;
+  for (std::size_t j = 0; j < std::min<std::size_t>(robot.position_count(), kMaxJointZeros); ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    zeros.push_back({robot.position_names()[j], refined.joint_zeros[row], refined.joint_zero_sigmas[row]});
+  }
+  return zeros;
+}
+
 CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera,
                                     std::span<const View> views, const CalibrationSettings& settings) {
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
@@ -86,6 +95,7 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   CalibrationResult result;
   result.views = static_cast<int>(views.size());
   judge(refined, {}, result);
+  if (result.verdict != Verdict::rejected) result.joint_zeros = named_zeros(robot, refined);
   return result;
 }
 
