@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/calibration/calibrate.hpp"
 #include "core/capture/capture.hpp"
 #include "core/robot/robot_model.hpp"
 
@@ -42,6 +43,18 @@ struct FineOptions {
   bool vary = false;  ///< another random guess for every run
 };
 int run_fine(const FineOptions& options);
+
+/// One line about a result: verdict, error against `reference`, and what it says of itself.
+void print_run(const Input& input, const CalibrationResult& result, const Pose& reference);
+
+struct GlobalOptions {
+  std::filesystem::path capture_dir;
+  Paths models;
+  int runs = 1;
+  bool depth_only = false;
+  bool starts = false;  ///< print the hypotheses of the search first
+};
+int run_global(const GlobalOptions& options);
 
 struct RenderOptions {
   std::filesystem::path urdf;

@@ -24,6 +24,8 @@ double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
   return 1e3 * std::sqrt(squares / static_cast<double>(input.check_points.size()));
 }
 
+}  // namespace
+
 void print_run(const Input& input, const CalibrationResult& result, const Pose& reference) {
   const Vector6d error =
       result.T_base_sensor ? difference(reference, *result.T_base_sensor) : Vector6d::Constant(NAN);
@@ -52,8 +54,6 @@ void print_run(const Input& input, const CalibrationResult& result, const Pose& 
   }
   std::printf("}\n");
 }
-
-}  // namespace
 
 int run_fine(const FineOptions& options) {
   const Input input = load(options.capture_dir, options.models);

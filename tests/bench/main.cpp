@@ -22,6 +22,14 @@ int main(int argc, char** argv) {
   fine_command->add_flag("--depth-only", fine.depth_only);
   fine_command->add_flag("--vary", fine.vary, "each run starts from another guess, up to the offset away");
 
+  GlobalOptions global;
+  CLI::App* global_command = app.add_subcommand("global", "calibrate a recording from nothing");
+  global_command->add_option("CAPTURE_DIR", global.capture_dir)->required();
+  global_command->add_option("--models", global.models, "folders to look robot models up in");
+  global_command->add_option("--runs", global.runs);
+  global_command->add_flag("--depth-only", global.depth_only);
+  global_command->add_flag("--starts", global.starts, "print the hypotheses of the search first");
+
   RenderOptions render;
   CLI::App* render_command = app.add_subcommand("render", "time the virtual sensor, joint update included");
   render_command->add_option("URDF", render.urdf)->required();
@@ -30,5 +38,6 @@ int main(int argc, char** argv) {
   render_command->add_option("--runs", render.runs);
 
   CLI11_PARSE(app, argc, argv);
+  if (global_command->parsed()) return run_global(global);
   return fine_command->parsed() ? run_fine(fine) : run_render(render);
 }

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/global/moving_points.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace calibrd {
+namespace {
+
+/// With few views one that saw the background must do; with many, two guard against a stray pixel.
+std::size_t needed_witnesses(std::size_t views) { return views >= 8 ? 2 : 1; }
+
+std::vector<std::uint8_t> moving_mask(std::span<const RegistrationView> views, std::size_t own,
+                                      const MovingSettings& settings) {
+  const std::vector<float>& depth = views[own].depth_m;
+  std::vector<std::uint8_t> witnesses(depth.size(), 0);
+  for (std::size_t other = 0; other < views.size(); ++other) {
+    if (other == own) continue;
+    const std::vector<float>& there = views[other].depth_m;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      const float step =
+          std::max(static_cast<float>(settings.min_step_m), static_cast<float>(settings.min_step) * depth[i]);
+      witnesses[i] += static_cast<std::uint8_t>(depth[i] > 0 && there[i] > depth[i] + step);
+    }
+  }
+  const std::size_t needed = needed_witnesses(views.size());
+  for (std::uint8_t& count : witnesses) count = count >= needed ? 1 : 0;
+  return witnesses;
+}
+
+/// Single pixels are noise: a moving pixel has moving neighbours on most sides.
+bool is_supported(const std::vector<std::uint8_t>& mask, const CameraModel& camera, int x, int y) {
+  if (x < 2 || y < 2 || x + 2 >= camera.width || y + 2 >= camera.height) return false;
+  int support = 0;
+  for (int dy = -2; dy <= 2; dy += 2)
+    for (int dx = -2; dx <= 2; dx += 2)
+      support += mask[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(camera.width) +
+                      static_cast<std::size_t>(x + dx)];
+  return support >= 6;
+}
+
+std::uint64_t voxel_of(const Eigen::Vector3f& p, double side) {
+  constexpr std::int64_t kMiddle = 1 << 20;
+  const auto cell = [&](float value) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / side)) + kMiddle);
+  };
+  return cell(p.x()) << 42 | cell(p.y()) << 21 | cell(p.z());
+}
+
+std::vector<Eigen::Vector3f> thinned(const std::vector<std::uint8_t>& mask, const RegistrationView& view,
+                                     const CameraModel& camera, double voxel_m) {
+  std::unordered_map<std::uint64_t, std::pair<Eigen::Vector3f, int>> cells;
+  for (int y = 0; y < camera.height; y += 2) {
+    for (int x = 0; x < camera.width; x += 2) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+      if (mask[i] == 0 || !is_supported(mask, camera, x, y)) continue;
+      const Eigen::Vector3f p = (view.depth_m[i] * camera.ray(x, y)).cast<float>();
+      auto& [sum, count] = cells.try_emplace(voxel_of(p, voxel_m), Eigen::Vector3f::Zero(), 0).first->second;
+      sum += p;
+      ++count;
+    }
+  }
+  std::vector<std::uint64_t> keys;  // sorted: the result must not depend on the hash
+  for (const auto& [key, cell] : cells)
+    if (cell.second >= 3) keys.push_back(key);
+  std::ranges::sort(keys);
+  std::vector<Eigen::Vector3f> points;
+  for (const std::uint64_t key : keys) {
+    const auto& [sum, count] = cells.at(key);
+    points.push_back(sum / static_cast<float>(count));
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
+                                             const CameraModel& camera, const MovingSettings& settings) {
+  std::vector<MovingPoints> moving(views.size());
+  tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    moving[v].mask = moving_mask(views, v, settings);
+    moving[v].points = thinned(moving[v].mask, views[v], camera, settings.voxel_m);
+  });
+  return moving;
+}
+
+}  // namespace calibrd
