@@ -89,8 +89,13 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   PrepareSettings prepare;
   prepare.use_images = !settings.depth_only;
   std::vector<RegistrationView> prepared = prepare_views(cell, camera, views, prepare);
-  const auto rough = settings.guess_T_base_sensor ? settings.guess_T_base_sensor : found_start(prepared, camera);
-  if (!rough) return rejected({"nothing_moved", "without a guess at least two postures are needed between which the robot moves in view; add postures or give a guess"}, views.size());
+  const auto rough =
+      settings.guess_T_base_sensor ? settings.guess_T_base_sensor : found_start(prepared, camera);
+  if (!rough)
+    return rejected({"nothing_moved",
+                     "without a guess at least two postures are needed between which the robot moves in "
+                     "view; add postures or give a guess"},
+                    views.size());
   const Pose start = coarse_align(prepared, camera, *rough, {});
 
   RefineSettings refinement;

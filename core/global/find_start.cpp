@@ -97,9 +97,8 @@ std::vector<FieldFit> distinct_best(std::vector<FieldFit> fits, std::size_t coun
   std::vector<FieldFit> best;
   for (const FieldFit& fit : fits) {
     if (best.size() == count) break;
-    if (std::ranges::none_of(best, [&](const FieldFit& other) {
-          return is_same(fit.T_base_sensor, other.T_base_sensor);
-        }))
+    if (std::ranges::none_of(
+            best, [&](const FieldFit& other) { return is_same(fit.T_base_sensor, other.T_base_sensor); }))
       best.push_back(fit);
   }
   return best;
@@ -138,10 +137,11 @@ std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views
 
   std::vector<std::vector<std::uint8_t>> masks;
   for (const MovingPoints& moving : evidence.moving) masks.push_back(moving.mask);
-  std::vector<StartHypothesis> starts(fits.size());
-  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
-    starts[i] = {fits[i].T_base_sensor, render_score(views, masks, camera, fits[i].T_base_sensor, {})};
-  });
+  std::vector<Pose> poses;
+  for (const FieldFit& fit : fits) poses.push_back(fit.T_base_sensor);
+  const std::vector<RenderScore> scores = render_scores(views, masks, camera, poses, {});
+  std::vector<StartHypothesis> starts;
+  for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
   return starts;
 }

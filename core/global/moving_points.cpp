@@ -14,16 +14,50 @@ namespace {
 /// With few views one that saw the background must do; with many, two guard against a stray pixel.
 std::size_t needed_witnesses(std::size_t views) { return views >= 8 ? 2 : 1; }
 
-std::vector<std::uint8_t> moving_mask(std::span<const RegistrationView> views, std::size_t own,
+constexpr float kOpenSpace_m = 1e3F;
+
+/// Depth of a view with its large holes filled by open space; small ones are drop-outs and shadows of edges.
+std::vector<float> with_open_space(const std::vector<float>& depth, const CameraModel& camera) {
+  const int reach = std::max(2, camera.width / 100);
+  const int w = camera.width, h = camera.height;
+  const auto at = [w](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(w + 1) + static_cast<std::size_t>(x);
+  };
+  std::vector<int> measured_above_left(static_cast<std::size_t>(w + 1) * static_cast<std::size_t>(h + 1), 0);
+  std::vector<float> filled = depth;
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      measured_above_left[at(x + 1, y + 1)] =
+          measured_above_left[at(x, y + 1)] + measured_above_left[at(x + 1, y)] -
+          measured_above_left[at(x, y)] +
+          (depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x)] >
+           0);
+  for (int y = 0; y < h; ++y) {
+    const int top = std::max(y - reach, 0), bottom = std::min(y + reach + 1, h);
+    for (int x = 0; x < w; ++x) {
+      const int left = std::max(x - reach, 0), right = std::min(x + reach + 1, w);
+      if (measured_above_left[at(right, bottom)] - measured_above_left[at(left, bottom)] -
+              measured_above_left[at(right, top)] + measured_above_left[at(left, top)] ==
+          0)
+        filled[static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x)] =
+            kOpenSpace_m;
+    }
+  }
+  return filled;
+}
+
+std::vector<std::uint8_t> moving_mask(std::span<const RegistrationView> views,
+                                      std::span<const std::vector<float>> filled, std::size_t own,
                                       const MovingSettings& settings) {
   const std::vector<float>& depth = views[own].depth_m;
+  const auto least = static_cast<float>(settings.min_step_m),
+             grows = static_cast<float>(settings.min_step_per_m);
   std::vector<std::uint8_t> witnesses(depth.size(), 0);
   for (std::size_t other = 0; other < views.size(); ++other) {
     if (other == own) continue;
-    const std::vector<float>& there = views[other].depth_m;
+    const std::vector<float>& there = filled[other];
     for (std::size_t i = 0; i < depth.size(); ++i) {
-      const float step =
-          std::max(static_cast<float>(settings.min_step_m), static_cast<float>(settings.min_step) * depth[i]);
+      const float step = std::max(least, grows * depth[i] * depth[i]);
       witnesses[i] += static_cast<std::uint8_t>(depth[i] > 0 && there[i] > depth[i] + step);
     }
   }
@@ -82,8 +116,11 @@ std::vector<Eigen::Vector3f> thinned(const std::vector<std::uint8_t>& mask, cons
 std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
                                              const CameraModel& camera, const MovingSettings& settings) {
   std::vector<MovingPoints> moving(views.size());
+  std::vector<std::vector<float>> filled(views.size());
+  tbb::parallel_for(std::size_t{0}, views.size(),
+                    [&](std::size_t v) { filled[v] = with_open_space(views[v].depth_m, camera); });
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-    moving[v].mask = moving_mask(views, v, settings);
+    moving[v].mask = moving_mask(views, filled, v, settings);
     moving[v].points = thinned(moving[v].mask, views[v], camera, settings.voxel_m);
   });
   return moving;

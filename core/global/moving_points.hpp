@@ -10,9 +10,9 @@
 namespace calibrd {
 
 struct MovingSettings {
-  double min_step_m = 0.04;  ///< what moved lies this much in front of what another view sees there ...
-  double min_step = 0.03;    ///< ... and this share of its own depth
-  double voxel_m = 0.05;     ///< one point is kept per cube of this side
+  double min_step_m = 0.04;      ///< what moved lies this far in front of what another view sees there ...
+  double min_step_per_m = 0.02;  ///< ... and this much times its squared depth: stereo's noise grows so
+  double voxel_m = 0.05;         ///< one point is kept per cube of this side
 };
 
 /// What of one view is not there in other views: the robot, what it carries, and what else moves.
@@ -22,8 +22,9 @@ struct MovingPoints {
 };
 
 /// Finds what moved between the views by comparing each pixel with the same pixel of the other views: the
-/// sensor stands still, so what a nearer surface hides in one view and shows in another has moved. Needs
-/// neither a model nor a mask. Two views or more; fewer give nothing.
+/// sensor stands still, so what a nearer surface hides in one view and shows in another has moved. A large
+/// area without any measurement counts as far away: open space, beyond the sensor's range. Needs neither a
+/// model nor a mask. Two views or more; fewer give nothing.
 std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
                                              const CameraModel& camera, const MovingSettings& settings);
 

@@ -19,6 +19,7 @@ struct RenderScore {
   /// Depth agreement minus free-space violation, with what moved and found its explanation: 1 = perfect, and
   /// below 0 for a pose that contradicts more than it explains.
   double value() const;
+  void merge(const RenderScore& other);
 };
 
 struct RenderScoreSettings {
@@ -26,9 +27,10 @@ struct RenderScoreSettings {
   double tolerance_m = 0.05;  ///< the start is rough, and the range is biased
 };
 
-/// `moving`: per view, per pixel, 1 = moved; may be empty (nothing known). Runs on the calling thread.
-RenderScore render_score(std::span<const RegistrationView> views,
-                         std::span<const std::vector<std::uint8_t>> moving, const CameraModel& camera,
-                         const Pose& T_base_sensor, const RenderScoreSettings& settings);
+/// One score per pose. `moving`: per view, per pixel, 1 = moved; empty when nothing is known of that.
+std::vector<RenderScore> render_scores(std::span<const RegistrationView> views,
+                                       std::span<const std::vector<std::uint8_t>> moving,
+                                       const CameraModel& camera, std::span<const Pose> poses_base_sensor,
+                                       const RenderScoreSettings& settings);
 
 }  // namespace calibrd
