@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/calibration/calibrate.hpp"
@@ -31,6 +33,8 @@ Input load(const std::filesystem::path& capture_dir, const Paths& models);
 Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random);
 
 double median(std::vector<double> values);
+
+const char* name_of(Verdict verdict);
 
 struct FineOptions {
   std::filesystem::path capture_dir;
@@ -63,5 +67,19 @@ struct RenderOptions {
   int runs = 200;
 };
 int run_render(const RenderOptions& options);
+
+struct ScenesOptions {
+  Paths urdfs;  ///< the scenes take them in turn
+  Paths models;
+  std::string level = "mixed";  ///< clean, cell, field, or all of them in turn
+  std::uint64_t first_seed = 1, scenes = 10;
+  std::vector<std::size_t> postures{10};      ///< simulated once, with the most; fewer: its first views
+  std::optional<double> guess_mm, guess_deg;  ///< neither: calibrate without a guess
+  bool depth_only = false;
+  bool noise_only = false;  ///< the robot alone, its depth without bias, flying pixels and drop-outs
+  bool bound = false;
+  unsigned jobs = 1;
+};
+int run_scenes(const ScenesOptions& options);
 
 }  // namespace calibrd::bench

@@ -10,10 +10,6 @@
 namespace calibrd::bench {
 namespace {
 
-const char* name_of(Verdict verdict) {
-  return verdict == Verdict::accepted ? "accepted" : verdict == Verdict::uncertain ? "uncertain" : "rejected";
-}
-
 /// Root mean square distance (mm) over the check points: where the pose puts them against where they should
 /// be.
 double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
