@@ -13,8 +13,9 @@ struct StartSettings {
   std::size_t rotations = 600;        ///< orientations tried, spread evenly over all
   std::size_t surface_points = 4000;  ///< of the robot's moving links, per view
   double voxel_m = 0.04;              ///< of the distance fields
-  std::size_t kept_fits = 60;         ///< hypotheses after the first, quick fit
-  std::size_t kept_scored = 16;       ///< of them judged by rendering
+  std::size_t kept_fits =
+      60;                   ///< hypotheses after the first, quick fit; half of them are judged by rendering
+  double convincing = 0.7;  ///< a score below this is not taken before every hypothesis was judged
 };
 
 /// A rough pose and how well it explains the views.
