@@ -46,24 +46,46 @@ std::vector<float> with_open_space(const std::vector<float>& depth, const Camera
   return filled;
 }
 
-std::vector<std::uint8_t> moving_mask(std::span<const RegistrationView> views,
-                                      std::span<const std::vector<float>> filled, std::size_t own,
-                                      const MovingSettings& settings) {
+/// What the other views say of one pixel.
+struct Witnesses {
+  std::uint8_t further = 0, open = 0, same = 0;
+};
+
+std::vector<Witnesses> question(std::span<const RegistrationView> views,
+                                std::span<const std::vector<float>> filled, std::size_t own,
+                                const MovingSettings& settings) {
   const std::vector<float>& depth = views[own].depth_m;
   const auto least = static_cast<float>(settings.min_step_m),
              grows = static_cast<float>(settings.min_step_per_m);
-  std::vector<std::uint8_t> witnesses(depth.size(), 0);
+  std::vector<Witnesses> witnesses(depth.size());
   for (std::size_t other = 0; other < views.size(); ++other) {
     if (other == own) continue;
     const std::vector<float>& there = filled[other];
     for (std::size_t i = 0; i < depth.size(); ++i) {
+      if (depth[i] <= 0 || there[i] <= 0) continue;
       const float step = std::max(least, grows * depth[i] * depth[i]);
-      witnesses[i] += static_cast<std::uint8_t>(depth[i] > 0 && there[i] > depth[i] + step);
+      const float behind = there[i] - depth[i];
+      const bool is_open = there[i] == kOpenSpace_m;
+      witnesses[i].open += static_cast<std::uint8_t>(is_open);
+      witnesses[i].further += static_cast<std::uint8_t>(!is_open && behind > step);
+      witnesses[i].same += static_cast<std::uint8_t>(std::abs(behind) <= step);
     }
   }
-  const std::size_t needed = needed_witnesses(views.size());
-  for (std::uint8_t& count : witnesses) count = count >= needed ? 1 : 0;
   return witnesses;
+}
+
+std::vector<std::uint8_t> moving_mask(std::span<const RegistrationView> views,
+                                      std::span<const std::vector<float>> filled, std::size_t own,
+                                      const MovingSettings& settings) {
+  const std::vector<Witnesses> witnesses = question(views, filled, own, settings);
+  const std::size_t needed = needed_witnesses(views.size());
+  std::vector<std::uint8_t> mask(witnesses.size());
+  std::ranges::transform(witnesses, mask.begin(), [needed](const Witnesses& w) {
+    // A hole may be open space, or something too near for the sensor that hides what always stands there.
+    const std::size_t open = w.open > w.same ? w.open : 0;
+    return static_cast<std::uint8_t>(w.further + open >= needed);
+  });
+  return mask;
 }
 
 /// Single pixels are noise: a moving pixel has moving neighbours on most sides.
