@@ -51,4 +51,11 @@ struct RenderOptions {
 };
 int run_render(const RenderOptions& options);
 
+struct RegisterOptions {
+  std::filesystem::path source, target;
+  int runs = 50;
+  int threads = 2;
+};
+int run_register(const RegisterOptions& options);
+
 }  // namespace calibrd::bench

@@ -29,6 +29,15 @@ int main(int argc, char** argv) {
   render_command->add_option("--distance-m", render.distance_m);
   render_command->add_option("--runs", render.runs);
 
+  RegisterOptions clouds;
+  CLI::App* register_command =
+      app.add_subcommand("register", "register two PLY clouds, starting as they lie");
+  register_command->add_option("--source", clouds.source)->required();
+  register_command->add_option("--target", clouds.target)->required();
+  register_command->add_option("--runs", clouds.runs)->check(CLI::PositiveNumber);
+  register_command->add_option("--threads", clouds.threads)->check(CLI::PositiveNumber);
+
   CLI11_PARSE(app, argc, argv);
+  if (register_command->parsed()) return run_register(clouds);
   return fine_command->parsed() ? run_fine(fine) : run_render(render);
 }
