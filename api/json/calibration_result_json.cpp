@@ -40,6 +40,13 @@ json::object depth_correction_json(const DepthCorrection& correction) {
           {"periodic_period_m", correction.periodic_period_m}};
 }
 
+json::array joint_zeros_json(const std::vector<JointZero>& zeros) {
+  json::array all;
+  for (const auto& zero : zeros)
+    all.push_back({{"joint", zero.joint}, {"zero", zero.zero}, {"sigma", zero.sigma}});
+  return all;
+}
+
 json::array reasons_json(const std::vector<Reason>& reasons) {
   json::array all;
   for (const auto& reason : reasons) all.push_back({{"code", reason.code}, {"text", reason.text}});
@@ -54,6 +61,15 @@ DepthCorrection depth_correction_of(const json::object& object) {
   correction.periodic_cos_m = number_or(object, "periodic_cos_m", 0);
   correction.periodic_period_m = number_or(object, "periodic_period_m", 0);
   return correction;
+}
+
+void read_joint_zeros(const json::object& object, CalibrationResult& result) {
+  const auto* zeros = object.if_contains("joint_zeros");
+  if (!zeros || !zeros->is_array()) return;
+  for (const auto& zero : zeros->get_array())
+    if (const auto* entry = zero.if_object())
+      result.joint_zeros.push_back(
+          {text_or(*entry, "joint", ""), number_or(*entry, "zero", 0), number_or(*entry, "sigma", 0)});
 }
 
 Result<CalibrationResult> read_pose_part(const json::object& object, CalibrationResult result) {
@@ -97,6 +113,7 @@ json::object calibration_result_object(const CalibrationResult& result) {
   object["sigma_position_m"] = result.sigma_position_m;
   object["sigma_rotation_rad"] = result.sigma_rotation_rad;
   object["depth_correction"] = depth_correction_json(result.depth_correction);
+  object["joint_zeros"] = joint_zeros_json(result.joint_zeros);
   object["residual_rms_m"] = result.residual_rms_m;
   object["coverage"] = result.coverage;
   object["views"] = result.views;
@@ -132,6 +149,7 @@ Result<CalibrationResult> parse_calibration_result(const std::string& text) {
     result.used_guess = used->is_bool() && used->get_bool();
   if (const auto* times = object->if_contains("time_ms"); times && times->is_object())
     result.time_total_ms = number_or(times->get_object(), "total", 0);
+  read_joint_zeros(*object, result);
   read_reasons(*object, result);
   return read_pose_part(*object, std::move(result));
 }

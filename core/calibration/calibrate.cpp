@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/calibration/verdict.hpp"
+#include "core/global/find_start.hpp"
 #include "core/paper/paper_method.hpp"
 #include "core/registration/coarse_align.hpp"
 #include "core/registration/refine.hpp"
@@ -66,6 +67,21 @@ CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel&
   return result;
 }
 
+std::vector<JointZero> named_zeros(const RobotModel& robot, const Refinement& refined) {
+  std::vector<JointZero> zeros;
+  for (std::size_t j = 0; j < std::min<std::size_t>(robot.position_count(), kMaxJointZeros); ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    zeros.push_back({robot.position_names()[j], refined.joint_zeros[row], refined.joint_zero_sigmas[row]});
+  }
+  return zeros;
+}
+
+std::optional<Pose> found_start(std::span<const RegistrationView> views, const CameraModel& camera) {
+  const auto starts = find_starts(views, camera, {});
+  if (starts.empty()) return std::nullopt;
+  return starts.front().T_base_sensor;
+}
+
 CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera,
                                     std::span<const View> views, const CalibrationSettings& settings) {
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
@@ -73,7 +89,14 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   PrepareSettings prepare;
   prepare.use_images = !settings.depth_only;
   std::vector<RegistrationView> prepared = prepare_views(cell, camera, views, prepare);
-  const Pose start = coarse_align(prepared, camera, *settings.guess_T_base_sensor, {});
+  const auto rough =
+      settings.guess_T_base_sensor ? settings.guess_T_base_sensor : found_start(prepared, camera);
+  if (!rough)
+    return rejected({"nothing_moved",
+                     "without a guess at least two postures are needed between which the robot moves in "
+                     "view; add postures or give a guess"},
+                    views.size());
+  const Pose start = coarse_align(prepared, camera, *rough, {});
 
   RefineSettings refinement;
   refinement.keep_going = [&](double progress) {
@@ -86,6 +109,7 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   CalibrationResult result;
   result.views = static_cast<int>(views.size());
   judge(refined, {}, result);
+  if (result.verdict != Verdict::rejected) result.joint_zeros = named_zeros(robot, refined);
   return result;
 }
 
@@ -95,14 +119,12 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
                             const CalibrationSettings& settings) {
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
-  if (!settings.guess_T_base_sensor)
-    return rejected(
-        {"guess_needed", "this version needs a rough pose (some centimetres, some degrees) to start from"},
-        views.size());
+  if (settings.method == Method::paper && !settings.guess_T_base_sensor)
+    return rejected({"guess_needed", "the paper's method needs a rough pose to start from"}, views.size());
   CalibrationResult result = settings.method == Method::paper
                                  ? calibrate_by_paper(robot, camera, views, *settings.guess_T_base_sensor)
                                  : calibrate_in_full(robot, camera, views, settings);
-  result.used_guess = true;
+  result.used_guess = settings.guess_T_base_sensor.has_value();
   result.time_total_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -26,6 +26,13 @@ struct Reason {
   std::string text;
 };
 
+/// Where a joint truly is when its reported position is 0, as far as the views tell (rad, prismatic: m).
+struct JointZero {
+  std::string joint;
+  double zero = 0;   ///< true minus reported position
+  double sigma = 0;  ///< its standard deviation; close to the prior where the views do not show it
+};
+
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
@@ -45,6 +52,7 @@ struct CalibrationResult {
   double sigma_position_m = std::sqrt(3.0);    ///< sqrt of the trace of the translation block
   double sigma_rotation_rad = std::sqrt(3.0);  ///< sqrt of the trace of the rotation block
   DepthCorrection depth_correction;
+  std::vector<JointZero> joint_zeros;  ///< reported beside the pose, not hidden in it
   double residual_rms_m = 0;
   double coverage =
       0;  ///< share of the robot pixels predicted visible that the measurement agrees with, 0..1

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace calibrd {
@@ -34,79 +35,85 @@ std::optional<std::vector<float>> sample_profile(const RegistrationView& view, c
 
 /// What the image should show along the normal, blurred as it blurs: shares of light that are constant on the
 /// robot, that fall with the cosine of incidence (active illumination dims a round limb towards its rim,
-/// which moves the steepest step up to a pixel inwards), and that come from beyond.
+/// which moves the steepest step up to a pixel inwards), and that come from beyond. One row per
+/// kSampleStep_px.
 class ProfileModel {
  public:
   static constexpr int kBases = 3;
-  using Row = Eigen::Matrix<double, 1, kBases>;
+  using Row = Eigen::Vector3d;
 
+  /// Rows from -reach to +reach samples around the contour.
   ProfileModel(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
-               const ContourPoint& point, double reach_px)
-      : reach_(static_cast<int>(std::ceil((reach_px + kBlurReach_px) / kFine_px))) {
+               const ContourPoint& point, int reach)
+      : reach_(reach) {
+    const int fine_reach = reach * kFinePerSample + kBlurRadius + 1;
     std::vector<Row> sharp;
+    sharp.reserve(static_cast<std::size_t>(2 * fine_reach));
     const float rim = static_cast<float>(point.p_sensor.z());
-    for (int k = -reach_; k <= reach_; ++k) {
+    for (int k = -fine_reach; k < fine_reach; ++k) {
       const Eigen::Vector2d p = point.pixel + kFine_px * (k + 0.5) * point.outward;
-      const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
       Row row(0, 0, 1);
       if (k < 0) {
+        const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
         const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
         if (!beyond(hit.depth_m, rim))
           row << 1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0;
       }
       sharp.push_back(row);
     }
-    blur(sharp);
+    blur(sharp, fine_reach);
   }
 
-  /// The bases at a distance (px) from the contour, outward positive.
-  Row at(double distance_px) const {
-    const double place = distance_px / kFine_px + reach_ - 0.5;
-    const auto k = std::clamp(static_cast<int>(place), 0, static_cast<int>(blurred_.size()) - 2);
-    const double share = place - k;
-    return (1 - share) * blurred_[static_cast<std::size_t>(k)] +
-           share * blurred_[static_cast<std::size_t>(k) + 1];
-  }
+  /// The bases at `sample` samples from the contour, outward positive.
+  const Row& at(int sample) const { return rows_[static_cast<std::size_t>(sample + reach_)]; }
 
  private:
-  static constexpr double kFine_px = 0.25;
-  static constexpr double kBlur_px =
-      0.78;  // a pixel's width, prepare_views' smoothing and bilinear sampling together
-  static constexpr double kBlurReach_px = 2.5;
+  static constexpr int kFinePerSample = 2;
+  static constexpr double kFine_px = kSampleStep_px / kFinePerSample;
+  static constexpr int kBlurRadius = 10;  // fine steps
 
-  void blur(const std::vector<Row>& sharp) {
-    const int radius = static_cast<int>(kBlurReach_px / kFine_px);
-    std::vector<double> kernel;
-    for (int k = -radius; k <= radius; ++k)
-      kernel.push_back(std::exp(-0.5 * std::pow(k * kFine_px / kBlur_px, 2)));
-    const int last = static_cast<int>(sharp.size()) - 1;
-    for (int i = 0; i <= last; ++i) {
-      Row sum = Row::Zero();
-      double weight = 0;
-      for (int k = -radius; k <= radius; ++k) {
-        sum += kernel[static_cast<std::size_t>(k + radius)] *
-               sharp[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
-        weight += kernel[static_cast<std::size_t>(k + radius)];
+  /// Weights of fine steps at odd half steps from a sample: a pixel's width, prepare_views' smoothing and
+  /// bilinear sampling together blur by 0.78 px.
+  static const std::array<double, 2 * kBlurRadius>& kernel() {
+    static const auto weights = [] {
+      constexpr double kBlur_px = 0.78;
+      std::array<double, 2 * kBlurRadius> w{};
+      double sum = 0;
+      for (int k = 0; k < 2 * kBlurRadius; ++k) {
+        const double distance_px = kFine_px * (k - kBlurRadius + 0.5);
+        sum += w[static_cast<std::size_t>(k)] = std::exp(-0.5 * std::pow(distance_px / kBlur_px, 2));
       }
-      blurred_.push_back(sum / weight);
+      for (double& weight : w) weight /= sum;
+      return w;
+    }();
+    return weights;
+  }
+
+  void blur(const std::vector<Row>& sharp, int fine_reach) {
+    rows_.reserve(static_cast<std::size_t>(2 * reach_ + 1));
+    for (int sample = -reach_; sample <= reach_; ++sample) {
+      const auto first = static_cast<std::size_t>(sample * kFinePerSample + fine_reach - kBlurRadius);
+      Row sum = Row::Zero();
+      for (std::size_t k = 0; k < kernel().size(); ++k) sum += kernel()[k] * sharp[first + k];
+      rows_.push_back(sum);
     }
   }
 
   int reach_;
-  std::vector<Row> blurred_;
+  std::vector<Row> rows_;
 };
 
-/// Squared misfit of the profile against the model moved outward by `shift_px`, the three shares of light
-/// fitted.
-double misfit(const std::vector<float>& grey, int reach, const ProfileModel& model, double shift_px) {
+/// Squared misfit of the profile against the model moved outward by `shift` samples, the three shares of
+/// light fitted.
+double misfit(const std::vector<float>& grey, int reach, const ProfileModel& model, int shift) {
   Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double squares = 0;
   for (int k = -reach; k <= reach; ++k) {
-    const ProfileModel::Row row = model.at(kSampleStep_px * k - shift_px);
+    const ProfileModel::Row& row = model.at(k - shift);
     const double value = grey[static_cast<std::size_t>(k + reach)];
-    normal.noalias() += row.transpose() * row;
-    right += value * row.transpose();
+    normal.noalias() += row * row.transpose();
+    right += value * row;
     squares += value * value;
   }
   return std::max(squares - right.dot(normal.ldlt().solve(right)), 0.0);
@@ -155,7 +162,7 @@ std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel&
                                 const Pose& T_base_sensor, const ContourPoint& point,
                                 const ContourSettings& settings) {
   constexpr double kWindow_px = 4;
-  constexpr double kShiftStep_px = 0.5;
+  constexpr double kShiftStep_px = kSampleStep_px;
   constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
   constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
   const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
@@ -163,10 +170,10 @@ std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel&
   if (!grey) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(*grey);
   if (high - low < settings.min_contrast * view.image_noise) return std::nullopt;
-  const ProfileModel model(view, camera, T_base_sensor, point, kWindow_px + settings.search_px);
   const int shifts = static_cast<int>(settings.search_px / kShiftStep_px);
+  const ProfileModel model(view, camera, T_base_sensor, point, reach + shifts);
   std::vector<double> costs;
-  for (int k = -shifts; k <= shifts; ++k) costs.push_back(misfit(*grey, reach, model, kShiftStep_px * k));
+  for (int k = -shifts; k <= shifts; ++k) costs.push_back(misfit(*grey, reach, model, k));
   const auto best = static_cast<int>(std::ranges::min_element(costs) - costs.begin());
   if (best == 0 || best + 1 == static_cast<int>(costs.size())) return std::nullopt;
   const double before = costs[static_cast<std::size_t>(best - 1)],

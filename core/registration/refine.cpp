@@ -229,7 +229,9 @@ class Refiner {
     result_.weakest_eigenvalue = Eigen::SelfAdjointEigenSolver<Matrix6d>(pose_information).eigenvalues()[0];
     result_.range = std::move(sums.range_tally);
     result_.contour = std::move(sums.contour_tally);
-  }  /// From the pose of the true base to the pose that is right for the joints as reported.
+  }
+
+  /// From the pose of the true base to the pose that is right for the joints as reported.
   void publish_for_reported_joints(const ParameterMatrix& covariance) {
     Eigen::Matrix<double, 6, kParameters> published = Eigen::Matrix<double, 6, kParameters>::Zero();
     published.leftCols<6>().setIdentity();

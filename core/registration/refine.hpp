@@ -27,9 +27,9 @@ struct RefineSettings {
 /// Where the refinement ended and what speaks for it.
 struct Refinement {
   Pose T_base_sensor = Pose::Identity();
-  DepthCorrection correction;  /// Joint zeros found (true minus reported position) and their standard
-                               /// deviations, rad or m. The pose is the one
-  /// that is right for the joints as reported; the zeros are not hidden in it.
+  DepthCorrection correction;
+  /// Joint zeros found (true minus reported position) and their standard deviations, rad or m. The pose is
+  /// the one that is right for the joints as reported; the zeros are not hidden in it.
   Eigen::Matrix<double, kMaxJointZeros, 1> joint_zeros = Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
   Eigen::Matrix<double, kMaxJointZeros, 1> joint_zero_sigmas =
       Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "core/calibration/calibrate.hpp"
 #include "core/capture/capture.hpp"
 #include "core/robot/robot_model.hpp"
 
@@ -31,6 +34,8 @@ Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::m
 
 double median(std::vector<double> values);
 
+const char* name_of(Verdict verdict);
+
 struct FineOptions {
   std::filesystem::path capture_dir;
   Paths models;
@@ -42,6 +47,18 @@ struct FineOptions {
   bool vary = false;  ///< another random guess for every run
 };
 int run_fine(const FineOptions& options);
+
+/// One line about a result: verdict, error against `reference`, and what it says of itself.
+void print_run(const Input& input, const CalibrationResult& result, const Pose& reference);
+
+struct GlobalOptions {
+  std::filesystem::path capture_dir;
+  Paths models;
+  int runs = 1;
+  bool depth_only = false;
+  bool starts = false;  ///< print the hypotheses of the search first
+};
+int run_global(const GlobalOptions& options);
 
 struct RenderOptions {
   std::filesystem::path urdf;
@@ -57,5 +74,19 @@ struct RegisterOptions {
   int threads = 2;
 };
 int run_register(const RegisterOptions& options);
+
+struct ScenesOptions {
+  Paths urdfs;  ///< the scenes take them in turn
+  Paths models;
+  std::string level = "mixed";  ///< clean, cell, field, or all of them in turn
+  std::uint64_t first_seed = 1, scenes = 10;
+  std::vector<std::size_t> postures{10};      ///< simulated once, with the most; fewer: its first views
+  std::optional<double> guess_mm, guess_deg;  ///< neither: calibrate without a guess
+  bool depth_only = false;
+  bool noise_only = false;  ///< the robot alone, its depth without bias, flying pixels and drop-outs
+  bool bound = false;
+  unsigned jobs = 1;
+};
+int run_scenes(const ScenesOptions& options);
 
 }  // namespace calibrd::bench

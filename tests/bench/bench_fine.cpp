@@ -10,10 +10,6 @@
 namespace calibrd::bench {
 namespace {
 
-const char* name_of(Verdict verdict) {
-  return verdict == Verdict::accepted ? "accepted" : verdict == Verdict::uncertain ? "uncertain" : "rejected";
-}
-
 /// Root mean square distance (mm) over the check points: where the pose puts them against where they should
 /// be.
 double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
@@ -23,6 +19,8 @@ double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
     squares += (*result.T_base_sensor * p_sensor - p_base).squaredNorm();
   return 1e3 * std::sqrt(squares / static_cast<double>(input.check_points.size()));
 }
+
+}  // namespace
 
 void print_run(const Input& input, const CalibrationResult& result, const Pose& reference) {
   const Vector6d error =
@@ -52,8 +50,6 @@ void print_run(const Input& input, const CalibrationResult& result, const Pose& 
   }
   std::printf("}\n");
 }
-
-}  // namespace
 
 int run_fine(const FineOptions& options) {
   const Input input = load(options.capture_dir, options.models);

@@ -67,6 +67,10 @@ Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::m
                       offset_m * random_direction(random));
 }
 
+const char* name_of(Verdict verdict) {
+  return verdict == Verdict::accepted ? "accepted" : verdict == Verdict::uncertain ? "uncertain" : "rejected";
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   std::ranges::sort(values);

@@ -20,7 +20,7 @@ MAY_INCLUDE = {
     "api": ("api", "core"),
     "server": ("server", "api", "drivers", "core"),
     "config": ("config", "core"),
-    "tests": ("tests", "server", "api", "drivers", "core"),
+    "tests": ("tests", "server", "api", "drivers", "core", "config"),
 }
 FOLDERS = ("core", "drivers", "api", "server", "config", "tests")
 

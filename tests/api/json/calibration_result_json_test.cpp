@@ -22,6 +22,7 @@ CalibrationResult accepted_result() {
   result.sigma_position_m = 0.001;
   result.sigma_rotation_rad = 0.002;
   result.depth_correction = {1.001, -0.018, 0.004, 1.2, 0.5};
+  result.joint_zeros = {{"joint_s", 0.001, 0.0002}, {"joint_l", -0.0004, 0.0009}};
   result.residual_rms_m = 0.003;
   result.coverage = 0.9;
   result.views = 5;
@@ -33,9 +34,9 @@ CalibrationResult accepted_result() {
 
 TEST(CalibrationResultJson, HoldsEveryKeyOfTheContract) {
   const auto object = json::parse(calibration_result_json(accepted_result(), 12.0)).as_object();
-  for (const auto* key :
-       {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
-        "depth_correction", "residual_rms_m", "coverage", "views", "used_guess", "reasons", "time_ms"})
+  for (const auto* key : {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
+                          "depth_correction", "joint_zeros", "residual_rms_m", "coverage", "views",
+                          "used_guess", "reasons", "time_ms"})
     EXPECT_TRUE(object.contains(key)) << key;
   EXPECT_EQ(object.at("verdict"), "accepted");
   EXPECT_EQ(object.at("T_base_sensor").as_array().size(), 4U);
@@ -60,6 +61,10 @@ TEST(CalibrationResultJson, ReadsBackTheSame) {
   EXPECT_TRUE(read->covariance.isApprox(result.covariance, 1e-14));
   EXPECT_EQ(read->verdict, result.verdict);
   EXPECT_DOUBLE_EQ(read->depth_correction.periodic_period_m, result.depth_correction.periodic_period_m);
+  ASSERT_EQ(read->joint_zeros.size(), 2U);
+  EXPECT_EQ(read->joint_zeros[1].joint, "joint_l");
+  EXPECT_DOUBLE_EQ(read->joint_zeros[1].zero, -0.0004);
+  EXPECT_DOUBLE_EQ(read->joint_zeros[1].sigma, 0.0009);
   EXPECT_DOUBLE_EQ(read->coverage, result.coverage);
   EXPECT_EQ(read->views, result.views);
   EXPECT_TRUE(read->used_guess);

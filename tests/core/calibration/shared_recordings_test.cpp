@@ -81,7 +81,8 @@ INSTANTIATE_TEST_SUITE_P(, OtherSimulated,
 
 TEST_P(OtherSimulated, AreWithinTheirClaimsWhenAccepted) {
   // With joint zeros off, the pose that is right for the reported joints is not the base's: other truth.
-  if (std::string_view(GetParam()).starts_with("field")) GTEST_SKIP() << "field captures are judged by their check points";
+  if (std::string_view(GetParam()).starts_with("field"))
+    GTEST_SKIP() << "field captures are judged by their check points";
   if (result.verdict != Verdict::accepted) return;
   EXPECT_LT(error.dot(result.covariance.ldlt().solve(error)), 38.3) << summary();  // once in a million
 }

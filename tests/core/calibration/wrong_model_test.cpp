@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// Wrong intrinsics, wrong joint zeros: what the verdict must not let pass as good, and what results may claim.
+// Wrong intrinsics, wrong joint zeros: what the verdict must not let pass as good, and what results may
+// claim.
 #include "tests/core/calibration/calibrated.hpp"
 
 namespace calibrd {

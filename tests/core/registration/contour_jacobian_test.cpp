@@ -46,7 +46,11 @@ struct Board {
 RegistrationView view_with_one_step(const Board& board, int place, double step_at_px) {
   const CameraModel& camera = board.camera;
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  RegistrationView view{board.cell, {}, JointAxes(board.robot, board.cell.link_poses()), std::vector<float>(pixels, 0.0F), std::vector<float>(pixels, 100.0F),
+  RegistrationView view{board.cell,
+                        {},
+                        JointAxes(board.robot, board.cell.link_poses()),
+                        std::vector<float>(pixels, 0.0F),
+                        std::vector<float>(pixels, 100.0F),
                         1.0};
   const int length = board.crossed_along_x ? camera.width : camera.height;
   for (int t = 0; t < length; ++t) {

@@ -23,7 +23,12 @@ std::optional<OnePixel> observe(const VirtualCell& cell, const CameraModel& came
                                 const DepthCorrection& correction, int x, int y) {
   const VirtualMeasurement prediction = measured(cell, camera, T_base_sensor);
   const std::size_t i = pixel(prediction, x, y);
-  RegistrationView view{cell, {}, JointAxes(cell.robot(), cell.link_poses()), std::vector<float>(prediction.depth_m.size(), 0.0F), {}, 0};
+  RegistrationView view{cell,
+                        {},
+                        JointAxes(cell.robot(), cell.link_poses()),
+                        std::vector<float>(prediction.depth_m.size(), 0.0F),
+                        {},
+                        0};
   view.depth_m[i] = static_cast<float>(correction.measured(prediction.depth_m[i]) + kMeasuredBeyond_m);
   NormalEquations equations;
   RangeTally tally;

@@ -30,9 +30,7 @@ inline Bytes topic(simple_message::Body body, simple_message::WireFormat format 
   return simple_message::encode(
       {simple_message::CommType::topic, simple_message::ReplyCode::none, std::move(body)}, format);
 }
-inline Bytes joints(double first) {
-  return topic(JointFeedback{0, kValidPositions, 0, {first}, {}, {}});
-}
+inline Bytes joints(double first) { return topic(JointFeedback{0, kValidPositions, 0, {first}, {}, {}}); }
 inline Bytes status() { return topic(RobotStatus{1, 0, 0, 0, 0, 2, 1}); }
 inline Bytes cycle() {
   Bytes bytes = joints(0.1);

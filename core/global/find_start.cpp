@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/global/find_start.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "core/global/field_fit.hpp"
+#include "core/global/moving_points.hpp"
+#include "core/global/moving_surface.hpp"
+#include "core/global/point_groups.hpp"
+#include "core/global/rotation_grid.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr std::size_t kMinPoints = 8;  // per view: fewer say nothing of a shape
+
+/// What the views that show enough motion say, ready for fitting.
+struct Evidence {
+  std::vector<MovingPoints> moving;
+  std::vector<PosedSurface> surfaces;
+  std::vector<std::optional<DistanceField>> fields;
+  std::vector<PostureEvidence> postures;
+  std::vector<std::size_t> view_of;  // of each posture
+};
+
+Evidence gather(std::span<const RegistrationView> views, const CameraModel& camera,
+                const StartSettings& settings) {
+  Evidence evidence;
+  evidence.moving = find_moving_points(views, camera, {});
+  evidence.surfaces = sample_moving_surface(views, settings.surface_points);
+  evidence.fields.resize(views.size());
+  const auto is_usable = [&](std::size_t v) {
+    return evidence.moving[v].points.size() >= kMinPoints && !evidence.surfaces[v].points.empty();
+  };
+  tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    if (is_usable(v))
+      evidence.fields[v].emplace(evidence.surfaces[v].points, static_cast<float>(settings.voxel_m), 0.25F);
+  });
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (!is_usable(v)) continue;
+    evidence.postures.push_back({&*evidence.fields[v], evidence.moving[v].points});
+    evidence.view_of.push_back(v);
+  }
+  return evidence;
+}
+
+/// Middle of what a far sensor that looks along `direction` (base frame) sees of a surface: facing points,
+/// each with its projected area.
+Eigen::Vector3f visible_middle(const PosedSurface& surface, const Eigen::Vector3f& direction) {
+  constexpr std::size_t kStride = 16;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float weights = 0;
+  for (std::size_t i = 0; i < surface.points.size(); i += kStride) {
+    const float weight = std::max(0.0F, -surface.normals[i].dot(direction));
+    sum += weight * surface.points[i];
+    weights += weight;
+  }
+  return weights > 0 ? Eigen::Vector3f(sum / weights) : surface.points.front();
+}
+
+using Groups = std::vector<std::vector<PointGroup>>;  // per posture
+
+Groups groups_of(std::span<const PostureEvidence> postures) {
+  constexpr float kReach_m = 0.12F;
+  constexpr std::size_t kMostGroups = 6;
+  Groups all;
+  for (const PostureEvidence& posture : postures) {
+    all.push_back(group_points(posture.points_sensor, kReach_m, kMinPoints));
+    if (all.back().size() > kMostGroups) all.back().resize(kMostGroups);
+  }
+  return all;
+}
+
+/// A place of the sensor that groups of several postures agree on.
+struct Place {
+  Eigen::Vector3f position_base = Eigen::Vector3f::Zero();
+  std::size_t postures = 0;  ///< that agree
+};
+
+/// The mean of the places nearest to `seed`, one per posture, that lie within reach of it.
+Place agreed_place(const std::vector<std::vector<Eigen::Vector3f>>& places, const Eigen::Vector3f& seed) {
+  constexpr float kReach_m = 0.4F;
+  Place agreed;
+  for (const auto& of_posture : places) {
+    if (of_posture.empty()) continue;
+    const auto nearest = std::ranges::min_element(
+        of_posture, {}, [&](const Eigen::Vector3f& place) { return (place - seed).squaredNorm(); });
+    if ((*nearest - seed).norm() > kReach_m) continue;
+    agreed.position_base += *nearest;
+    ++agreed.postures;
+  }
+  agreed.position_base /= static_cast<float>(std::max<std::size_t>(1, agreed.postures));
+  return agreed;
+}
+
+/// Where a sensor of that orientation may stand so that in most postures a group of moving points lies where
+/// the robot is. What else moves (people) agrees on no place.
+std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& evidence,
+                         const Groups& groups) {
+  constexpr std::size_t kMostPlaces = 2;
+  constexpr float kSame_m = 0.3F;
+  const Eigen::Matrix3f R = R_base_sensor.cast<float>();
+  std::vector<std::vector<Eigen::Vector3f>> places(groups.size());
+  for (std::size_t p = 0; p < groups.size(); ++p) {
+    const Eigen::Vector3f middle = visible_middle(evidence.surfaces[evidence.view_of[p]], R.col(2));
+    for (const PointGroup& group : groups[p]) places[p].push_back(middle - R * group.middle);
+  }
+  std::vector<Place> candidates;
+  for (const auto& of_posture : places)
+    for (const Eigen::Vector3f& seed : of_posture) candidates.push_back(agreed_place(places, seed));
+  std::ranges::stable_sort(candidates, std::greater<>{}, &Place::postures);
+  std::vector<Pose> poses;
+  for (const Place& place : candidates) {
+    const Eigen::Vector3d position = place.position_base.cast<double>();
+    if (poses.size() == kMostPlaces) break;
+    if (std::ranges::any_of(
+            poses, [&](const Pose& other) { return (other.translation() - position).norm() < kSame_m; }))
+      continue;
+    Pose& pose = poses.emplace_back(Pose::Identity());
+    pose.linear() = R_base_sensor;
+    pose.translation() = position;
+  }
+  return poses;
+}
+
+bool is_same(const Pose& a, const Pose& b) {
+  const Vector6d apart = difference(a, b);
+  // The sensor's place alone may differ much when both look at the robot from the same side.
+  return apart.head<3>().norm() < 0.15 && apart.tail<3>().norm() < 0.15;
+}
+
+/// The best `count` that are not the same, by cost.
+std::vector<FieldFit> distinct_best(std::vector<FieldFit> fits, std::size_t count) {
+  std::ranges::stable_sort(fits, {}, &FieldFit::cost);
+  std::vector<FieldFit> best;
+  for (const FieldFit& fit : fits) {
+    if (best.size() == count) break;
+    if (std::ranges::none_of(
+            best, [&](const FieldFit& other) { return is_same(fit.T_base_sensor, other.T_base_sensor); }))
+      best.push_back(fit);
+  }
+  return best;
+}
+
+std::vector<FieldFit> fit_all(const Evidence& evidence, std::vector<FieldFit> fits,
+                              const FieldFitSettings& settings) {
+  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
+    fits[i] = fit_to_fields(evidence.postures, fits[i].T_base_sensor, settings);
+  });
+  return fits;
+}
+
+std::vector<FieldFit> first_guesses(const Evidence& evidence, std::size_t rotations) {
+  const Groups groups = groups_of(evidence.postures);
+  std::vector<FieldFit> guesses;
+  for (const Eigen::Matrix3d& R : even_rotations(rotations))
+    for (const Pose& pose : placed(R, evidence, groups)) guesses.push_back({pose, 1});
+  return guesses;
+}
+
+std::size_t stride_for(const Evidence& evidence, std::size_t wanted) {
+  std::size_t points = 0;
+  for (const PostureEvidence& posture : evidence.postures) points += posture.points_sensor.size();
+  return std::max<std::size_t>(1, points / wanted);
+}
+
+std::vector<FieldFit> quick_fits(const Evidence& evidence, std::size_t rotations) {
+  return fit_all(evidence, first_guesses(evidence, rotations), {0.3, 0.1, 8, stride_for(evidence, 150)});
+}
+
+/// The best `count` of the fits, fitted closer, and the better half of them judged by rendering.
+std::vector<StartHypothesis> judged(std::span<const RegistrationView> views, const CameraModel& camera,
+                                    const Evidence& evidence, const std::vector<FieldFit>& fits,
+                                    std::size_t count) {
+  const FieldFitSettings close{0.12, 0.04, 10, stride_for(evidence, 600)};
+  const std::vector<FieldFit> best = distinct_best(fit_all(evidence, distinct_best(fits, count), close),
+                                                   std::max<std::size_t>(1, count / 2));
+  std::vector<std::vector<std::uint8_t>> masks;
+  for (const MovingPoints& moving : evidence.moving) masks.push_back(moving.mask);
+  std::vector<Pose> poses;
+  for (const FieldFit& fit : best) poses.push_back(fit.T_base_sensor);
+  const std::vector<RenderScore> scores = render_scores(views, masks, camera, poses, {});
+  std::vector<StartHypothesis> starts;
+  for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
+  std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
+  return starts;
+}
+
+}  // namespace
+
+std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views, const CameraModel& camera,
+                                         const StartSettings& settings) {
+  const Evidence evidence = gather(views, camera, settings);
+  if (evidence.postures.empty()) return {};
+  const std::vector<FieldFit> fits = quick_fits(evidence, settings.rotations);
+  std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
+  // People who walk by can hide the truth among fits that explain them better: then all are looked at.
+  if (starts.front().score.value() < settings.convincing)
+    starts = judged(views, camera, evidence, fits, fits.size());
+  return starts;
+}
+
+}  // namespace calibrd

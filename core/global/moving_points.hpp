@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/registration/registration_view.hpp"
+
+namespace calibrd {
+
+struct MovingSettings {
+  double min_step_m = 0.04;      ///< what moved lies this far in front of what another view sees there ...
+  double min_step_per_m = 0.02;  ///< ... and this much times its squared depth: stereo's noise grows so
+  double voxel_m = 0.05;         ///< one point is kept per cube of this side
+};
+
+/// What of one view is not there in other views: the robot, what it carries, and what else moves.
+struct MovingPoints {
+  std::vector<Eigen::Vector3f> points;  ///< sensor frame, m, thinned evenly
+  std::vector<std::uint8_t> mask;       ///< per pixel, 1 = moving
+};
+
+/// Finds what moved between the views by comparing each pixel with the same pixel of the other views: the
+/// sensor stands still, so what a nearer surface hides in one view and shows in another has moved. A large
+/// area without any measurement counts as far away: open space, beyond the sensor's range. Needs neither a
+/// model nor a mask. Two views or more; fewer give nothing.
+std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
+                                             const CameraModel& camera, const MovingSettings& settings);
+
+}  // namespace calibrd

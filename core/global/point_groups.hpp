@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace calibrd {
+
+/// Points that hang together: a robot's arm, or a person who walks past.
+struct PointGroup {
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  std::size_t size = 0;
+};
+
+/// Groups of points of which each lies within `reach_m` of another, the largest first, without those of fewer
+/// than `min_size`.
+std::vector<PointGroup> group_points(std::span<const Eigen::Vector3f> points, float reach_m,
+                                     std::size_t min_size);
+
+}  // namespace calibrd

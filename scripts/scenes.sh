@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Calibrates random simulated scenes, holds the truth against the results and prints the table.
+#   scripts/scenes.sh             240 scenes, levels and robots in turn, from 10, 6 and 4 postures
+#   scripts/scenes.sh --short     12 of them
+#   scripts/scenes.sh --bound     60 scenes of noise alone, depth alone: errors over the Cramer-Rao bound
+#   --tuning        seeds from 1 instead of from 100001: 1..999 are for tuning, the others for reports, never both
+#   --scenes N      another number of scenes
+#   --keep FILE     where to leave the JSON lines
+# What follows `--` goes to calibrd-bench scenes:  scripts/scenes.sh --short -- --guess-mm 40 --guess-deg 4
+# With CALIBRD_SHARED_DATA set, the SIA5D in its models/ takes part beside the robots of the project.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+build=build/${CALIBRD_PRESET:-release}
+bench=$build/bin/calibrd-bench
+first=100001 scenes=240 postures=10,6,4 kept='' mode=()
+
+die() {
+  echo "scenes.sh: $*" >&2
+  exit 2
+}
+
+while [ $# -gt 0 ]; do
+  case $1 in
+    --short) short=12 ;;
+    --bound) mode=(--bound) scenes=60 postures=10,3,1 ;;
+    --tuning) first=1 ;;
+    --scenes) short=${2:?--scenes needs a number} && shift ;;
+    --keep) kept=${2:?--keep needs a file} && shift ;;
+    --) shift && break ;;
+    *) die "unknown option '$1'; see the head of scripts/scenes.sh" ;;
+  esac
+  shift
+done
+scenes=${short:-$scenes}
+
+[ -x "$bench" ] || die "$bench is missing; run scripts/test.sh first"
+robots=()
+for name in demo_arm7 test_arm6; do
+  for urdf in "$build"/{share/calibrd,tests}/robots/$name/urdf/$name.urdf; do
+    [ -f "$urdf" ] && robots+=(--robot "$urdf")
+  done
+done
+[ ${#robots[@]} -gt 0 ] || die "no robot in $build; run scripts/test.sh first"
+models=${CALIBRD_SHARED_DATA:+$CALIBRD_SHARED_DATA/models}
+sia5d=$models/motoman_sia5d_support/urdf/sia5d.urdf
+if [ -n "$models" ] && [ -f "$sia5d" ]; then robots+=(--robot "$sia5d" --models "$models"); fi
+
+options=(--level mixed)
+if [ ${#mode[@]} -gt 0 ]; then options=(--noise-only --depth-only --bound); fi
+lines=$(mktemp)
+trap 'rm -f "$lines"' EXIT
+"$bench" scenes "${robots[@]}" "${options[@]}" --first-seed "$first" --scenes "$scenes" --postures "$postures" "$@" > "$lines"
+if [ -n "$kept" ]; then cp "$lines" "$kept"; fi
+python3 scripts/scenes_table.py "${mode[@]}" "$lines"
