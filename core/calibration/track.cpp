@@ -184,9 +184,9 @@ bool PoseTracker::step(const Sums& sums, double scatter, TrackedPose& tracked) c
   Parameters gradient = worth * sums.gradient;
   information(6, 6) += prior;
   gradient[6] -= prior * tracked.offset_change_m;
-  constexpr double kLeastCondition = 1e-9;
   const Eigen::LDLT<Information> solver(information);
-  if (solver.info() != Eigen::Success || !(solver.rcond() > kLeastCondition)) return false;
+  constexpr double kLeastPivot = 1e-9;  // of the largest; what a flat face leaves open lies far below
+  if (!(solver.vectorD().minCoeff() > kLeastPivot * solver.vectorD().maxCoeff())) return false;
   const Parameters delta = solver.solve(gradient);
   tracked.T_base_sensor = perturbed(tracked.T_base_sensor, delta.head<6>());
   tracked.offset_change_m += delta[6];
