@@ -88,7 +88,7 @@ Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, co
 
 }  // namespace
 
-Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera, const Pose& guess,
+Pose coarse_align(std::span<const RegistrationView> views, const CameraModel& camera, const Pose& guess,
                   const CoarseSettings& settings) {
   const CameraModel small = reduced(camera, settings.reduction);
   std::vector<std::optional<CloudTree>> measured(views.size());
