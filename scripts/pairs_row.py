@@ -29,5 +29,5 @@ found = json.load(sys.stdin)
 truth = [[float(number) for number in line.split()] for line in (folder / "truth.txt").read_text().splitlines()]
 points = points_of(folder / "source.ply")
 squares = sum(math.dist(applied(truth, p), applied(found["T_target_source"], p)) ** 2 for p in points)
-print(f'{folder.name:12s} {found["median_ms"]:10.2f} {1e3 * math.sqrt(squares / len(points)):10.4f} '
+print(f'{folder.name:12s} {found["median_ms"]:10.2f} {found["least_ms"]:10.2f} {1e3 * math.sqrt(squares / len(points)):10.4f} '
       f'{found["iterations"]:6d} {found["overlap"]:8.3f}')
