@@ -205,7 +205,7 @@ std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel&
   constexpr double kWindow_px = 4;
   constexpr double kShiftStep_px = kSampleStep_px;
   constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
-  constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
+  constexpr double kModelFloor_px = 0.30;  // what the light model itself gets wrong
   const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
   const auto grey = sample_profile(view, camera, point, reach);
   if (!grey) return std::nullopt;
