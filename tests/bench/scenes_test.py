@@ -25,7 +25,7 @@ def scene(*options):
 
 class Scenes(unittest.TestCase):
     def test_one_scene_from_a_guess_to_the_table(self):
-        text, lines = scene("--level", "field", "--postures", "2,1", "--guess-mm", "20", "--guess-deg", "2")
+        text, lines = scene("--level", "field", "--postures", "1,2,1", "--guess-mm", "20", "--guess-deg", "2")
         self.assertEqual([(line["seed"], line["K"], line["level"]) for line in lines], [(3, 2, "field"), (3, 1, "field")])
         both = lines[0]
         self.assertEqual(both["verdict"], "accepted")
