@@ -165,7 +165,8 @@ class Refiner {
     add(kSine, c.periodic_sin_m, settings_.periodic_prior_m);
     add(kCosine, c.periodic_cos_m, settings_.periodic_prior_m);
     add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0, settings_.period_prior_m);
-    add(kContourShift, result_.contour_shift_px, settings_.contour_shift_prior_px);
+    add(kContourShift, result_.contour_shift_px,
+        has_images() ? settings_.contour_shift_prior_px : settings_.depth_contour_shift_prior_px);
     const double zero_sigma = stage.free_zeros ? settings_.joint_zero_prior : kHeld;
     for (int j = 0; j < kMaxJointZeros; ++j)
       add(static_cast<Parameter>(kJointZeros + j), result_.joint_zeros[j], zero_sigma);
@@ -179,6 +180,10 @@ class Refiner {
     gradient = all.gradient();
     add_priors(stage, information, gradient);
     return information;
+  }
+
+  bool has_images() const {
+    return std::ranges::any_of(views_, [](const RegistrationView& view) { return !view.image.empty(); });
   }
 
   void choose_period(const Stage& stage) {

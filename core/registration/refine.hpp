@@ -17,6 +17,7 @@ struct RefineSettings {
   double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
   double period_prior_m = 0.08;     ///< and of its period about the best candidate
   double contour_shift_prior_px = 0.3;
+  double depth_contour_shift_prior_px = 2;  ///< of depth edges: stereo fattens, time of flight frays
   double joint_zero_prior = 1e-3;  ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
