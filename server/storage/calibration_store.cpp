@@ -69,9 +69,11 @@ Result<std::unique_ptr<CalibrationStore>> CalibrationStore::open(const std::file
   std::error_code failure;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failure);
   if (failure) return Error{StorageError::cannot_open, file.string() + " (" + failure.message() + ")"};
+  auto lock = StoreLock::take(file);
+  if (!lock) return lock.error();
   auto database = Database::open(file);
   if (!database) return database.error();
-  std::unique_ptr<CalibrationStore> store(new CalibrationStore(*std::move(database)));
+  std::unique_ptr<CalibrationStore> store(new CalibrationStore(*std::move(lock), *std::move(database)));
   for (auto step : {&CalibrationStore::prepare_schema, &CalibrationStore::end_interrupted})
     if (auto status = ((*store).*step)(); !status)
       return Error{status.error().code, file.string() + " (" + status.error().detail + ")"};

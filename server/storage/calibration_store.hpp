@@ -10,6 +10,7 @@
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
 #include "server/storage/sqlite.hpp"
+#include "server/storage/store_lock.hpp"
 
 namespace calibrd {
 
@@ -24,8 +25,8 @@ struct KeyedStart {
 /// each other and for the disk. Errors: StorageError.
 class CalibrationStore {
  public:
-  /// Opens or makes the store; its folder is made when absent. Calibrations that had not ended when the last
-  /// daemon did are recorded as failed.
+  /// Opens or makes the store; its folder is made when absent. It belongs to this process until it is closed.
+  /// Calibrations that had not ended when the last daemon did are recorded as failed.
   static Result<std::unique_ptr<CalibrationStore>> open(const std::filesystem::path& file);
 
   /// Records that a calibration was asked for.
@@ -44,12 +45,14 @@ class CalibrationStore {
                                                const std::string& idempotency_key);
 
  private:
-  explicit CalibrationStore(Database database) : database_(std::move(database)) {}
+  CalibrationStore(StoreLock lock, Database database)
+      : lock_(std::move(lock)), database_(std::move(database)) {}
   Status prepare_schema();
   Status end_interrupted();
   Result<std::optional<api::CalibrationReport>> find_where(const std::string& condition,
                                                            const std::string& value);
 
+  const StoreLock lock_;
   std::mutex mutex_;
   Database database_;  // guarded by mutex_
 };

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest
+from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest, call
 
 
 class BadInput(CellTest):
@@ -93,6 +93,15 @@ class BadInput(CellTest):
     def test_a_file_that_is_no_database(self):
         (self.folder / "text.db").write_text("this is no database, but a text of more than a hundred bytes " * 4)
         self.expect_refused(self.run_daemon(f"storage.path={self.folder / 'text.db'}"), "text.db")
+
+    def test_a_store_that_another_daemon_uses(self):
+        simulator = self.simulate()
+        first = self.serve(simulator).wait_ready()
+        job = first.start_calibration(postures=50)
+        self.expect_refused(self.run_daemon(), "calibrd.db", "another calibrd", "storage.path")
+        self.assertEqual(first.json(job)["status"], "collecting")
+        call(first.port, "DELETE", job)
+        self.assertEqual(first.json(job)["status"], "cancelled", "its end could not be stored")
 
 
 if __name__ == "__main__":

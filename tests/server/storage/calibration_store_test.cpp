@@ -170,5 +170,18 @@ TEST_F(Store, StoreOfANewerVersionIsRefused) {
   EXPECT_EQ(opened.error().code, StorageError::newer_schema);
 }
 
+TEST_F(Store, BelongsToOneProcessAtATime) {
+  add("under way");
+  const auto link = folder_ / "link.db";
+  std::filesystem::create_symlink(file(), link);
+  for (const auto& name : {file(), link}) {
+    const auto second = CalibrationStore::open(name);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, StorageError::in_use);
+    EXPECT_NE(second.error().message().find("storage.path"), std::string::npos);
+  }
+  EXPECT_FALSE((**store_->find("under way")).finished) << "the second daemon ended it";
+}
+
 }  // namespace
 }  // namespace calibrd
