@@ -51,7 +51,10 @@ void LiveSensor::join() {
 }
 
 void LiveSensor::start(std::unique_ptr<DepthSource> source) {
-  source_ = std::move(source);
+  {
+    const std::lock_guard lock(mutex_);  // others may be asking for the sensor already
+    source_ = std::move(source);
+  }
   thread_ = std::thread([this] { run(); });
 }
 

@@ -31,6 +31,7 @@ TEST_F(Cell, AcceptedCalibrationBecomesThePose) {
   EXPECT_EQ(ended.status, JobStatus::succeeded);
   EXPECT_TRUE(ended.current);
   EXPECT_EQ(ended.result->views, 3);
+  EXPECT_EQ(ended.postures_seen, 3);
   EXPECT_TRUE(pose().valid);
   EXPECT_EQ(pose().known->calibration_id, started->id);
   EXPECT_EQ(pose().job, "");
@@ -207,6 +208,45 @@ TEST_F(Cell, HistoryShowsTheCalibrationUnderWayAsItIs) {
   ASSERT_TRUE(page);
   EXPECT_EQ(page->calibrations.front().id, id);
   EXPECT_EQ(page->calibrations.front().status, JobStatus::collecting);
+}
+
+TEST_F(Cell, CollectsNothingMoreWhileItComputes) {
+  std::atomic<bool> may_end{false};
+  on_calibrate_ = [&](auto views, const CalibrationSettings&) {
+    while (!may_end) std::this_thread::yield();
+    return accepted(views);
+  };
+  const auto id = start_job(2)->id;
+  repeat_until(
+      [&] {
+        stand(0.3 * (1 + job(id).postures_seen));
+        show();
+      },
+      [&] { return job(id).status == JobStatus::running; });
+  const auto views = cell_->sensor("eye")->views.views;
+  repeat_until(
+      [&] {
+        stand(1.5);
+        show();
+      },
+      [&] { return cell_->sensor("eye")->views.views > views + 3; });
+  EXPECT_EQ(job(id).postures_seen, 2);
+  may_end = true;
+  wait_for([&] { return job(id).finished.has_value(); });
+  EXPECT_EQ(job(id).postures_seen, 2);
+}
+
+/// For the thread sanitizer.
+TEST_F(Cell, SensorCanBeAskedForWhileItStarts) {
+  std::atomic<bool> asking{true};
+  ASSERT_TRUE(cell_->add_sensor({"late", camera_, Clock::duration(0), guess_}));
+  std::thread client([&] {
+    while (asking) EXPECT_FALSE(cell_->sensor("late")->health.empty());
+  });
+  cell_->start("late", std::make_unique<FedSource>(std::make_shared<FedSource::Feed>()));
+  wait_for([&] { return cell_->sensor("late")->health == "streaming"; });
+  asking = false;
+  client.join();
 }
 
 TEST_F(Cell, EndsAtOnceWhileCollecting) {
