@@ -71,7 +71,7 @@ class CalibrationJobs {
            std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at);
   void end_overdue(const JobPointer& job);
   void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
-  bool store_end(api::CalibrationReport& report);
+  bool store_end(api::CalibrationReport& report, const std::string& basis);
   api::CalibrationReport report_of(const Job& job) const;
 
   CalibrationStore& store_;

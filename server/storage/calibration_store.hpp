@@ -20,6 +20,13 @@ struct KeyedStart {
   std::string fingerprint;
 };
 
+/// The calibration whose pose a sensor has.
+struct CurrentCalibration {
+  api::CalibrationReport calibration;
+  std::string basis;  ///< what its pose was found with, as stated when it was activated
+  bool drifted = false;
+};
+
 /// Every calibration ever made, in an SQLite file. Rows are only ever added: the schema refuses to change or
 /// delete one. A call that returns Done has reached the disk. Safe to call from any thread; calls wait for
 /// each other and for the disk. Errors: StorageError.
@@ -35,11 +42,15 @@ class CalibrationStore {
   /// Records how it ended; once for each calibration.
   Status finish(const api::CalibrationReport& calibration);
 
-  /// Makes a stored calibration the current one of its sensor.
-  Status activate(const api::CalibrationReport& calibration);
+  /// Makes a stored calibration the current one of its sensor. `basis`: see CurrentCalibration.
+  Status activate(const api::CalibrationReport& calibration, const std::string& basis);
+
+  /// Records that the calibration's pose has drifted, if it is its sensor's current one. It has until it is
+  /// activated again.
+  Status add_drift(const std::string& calibration_id);
 
   Result<std::optional<api::CalibrationReport>> find(const std::string& id);
-  Result<std::optional<api::CalibrationReport>> current(const std::string& sensor_id);
+  Result<std::optional<CurrentCalibration>> current(const std::string& sensor_id);
   Result<api::HistoryPage> history(const api::HistoryQuery& query);
   Result<std::optional<KeyedStart>> find_start(const std::string& sensor_id,
                                                const std::string& idempotency_key);
