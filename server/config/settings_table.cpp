@@ -180,7 +180,7 @@ void declare_sensors(std::vector<Setting>& table) {
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
-      "Rough T_base_sensor to start the first calibration from.");
+      "Rough T_base_sensor; only makes the first calibration faster.");
 }
 
 void declare_pose(std::vector<Setting>& table) {

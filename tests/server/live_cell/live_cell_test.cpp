@@ -228,6 +228,28 @@ TEST_F(Cell, LastPoseIsTheGuessOfTheNextCalibration) {
   EXPECT_EQ(guesses_x, (std::vector<double>{0.0, 0.3}));
 }
 
+TEST_F(Cell, WithoutAGuessTwoPosturesAreCollectedAndOneIsRefused) {
+  guess_.reset();
+  settings_.jobs.collector.postures = 1;
+  start();
+  const auto refused = start_job(1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ApiError::guess_needed);
+  bool guessed = true;
+  on_calibrate_ = [&](auto views, const CalibrationSettings& settings) {
+    guessed = settings.guess_T_base_sensor.has_value();
+    return accepted(views);
+  };
+  api::CalibrationRequest request;
+  request.sensor_id = "eye";
+  const auto id = cell_->start_calibration(request)->id;
+  EXPECT_EQ(job(id).postures_wanted, 2);
+  let_it_end(id);
+  EXPECT_EQ(job(id).status, JobStatus::succeeded);
+  EXPECT_FALSE(guessed);
+  EXPECT_TRUE(start_job(1)) << "the last pose is a guess";
+}
+
 TEST_F(Cell, MovingRobotGivesNoViewsAndTheReasonIsShown) {
   double turn = 0;
   repeat_until(
