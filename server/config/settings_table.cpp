@@ -106,6 +106,8 @@ void declare_link(std::vector<Setting>& table) {
       "A connection closed so soon after it was accepted has lost its slot to another client.");
   key("eviction_pause", &LinkConfig::eviction_pause, duration(0ms, 1h), "",
       "Pause after two such closes in a row.");
+  key("latency", &LinkConfig::latency, duration(0ms, 1s), "",
+      "From the moment joints were where a message says to its arrival; it is taken off their stamp.");
 }
 
 void declare_joints(std::vector<Setting>& table) {

@@ -17,7 +17,7 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       estimator_(std::move(estimator)),
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
-      robot_(model, std::move(mapping), settings_.gate, settings_.controller_frame),
+      robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
       clouds_(virtual_cell, robot_),
       jobs_(
           store, estimator_.calibrate,
@@ -159,6 +159,13 @@ Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view i
 
 Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const {
   if (const auto entry = find(query.sensor_id); !entry) return entry.error();
+  if (!query.before.empty()) {
+    const auto before = store_.find(query.before);
+    if (!before) return fail(ApiError::storage_failed, before.error().message());
+    if (!*before || (*before)->sensor_id != query.sensor_id)
+      return fail(ApiError::bad_query,
+                  "before: " + query.before + " is no calibration of " + query.sensor_id);
+  }
   auto page = store_.history(query);
   if (!page) return fail(ApiError::storage_failed, page.error().message());
   for (auto& calibration : page->calibrations)

@@ -250,6 +250,14 @@ TEST_F(Cell, WithoutAGuessTwoPosturesAreCollectedAndOneIsRefused) {
   EXPECT_TRUE(start_job(1)) << "the last pose is a guess";
 }
 
+TEST_F(Cell, LatencyOfTheLinkIsTakenOffTheStampsOfJoints) {
+  settings_.joint_latency = 10ms;
+  start();
+  const auto arrived = Clock::now();
+  events_.on_joints({0, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {}, ++joints_sent_, arrived});
+  EXPECT_EQ(cell_->robot().joints->stamp, arrived - 10ms);
+}
+
 TEST_F(Cell, MovingRobotGivesNoViewsAndTheReasonIsShown) {
   double turn = 0;
   repeat_until(
@@ -327,6 +335,15 @@ TEST_F(Cell, SensorCanBeAskedForWhileItStarts) {
   wait_for([&] { return cell_->sensor("late")->health == "streaming"; });
   asking = false;
   client.join();
+}
+
+TEST_F(Cell, HistoryBeforeACalibrationThatIsNotThereIsRefused) {
+  const auto id = calibrate();
+  EXPECT_TRUE(cell_->history({"eye", 10, id}));
+  const auto refused = cell_->history({"eye", 10, "nope"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ApiError::bad_query);
+  EXPECT_NE(refused.error().detail.find("nope"), std::string::npos);
 }
 
 TEST_F(Cell, EndsAtOnceWhileCollecting) {
