@@ -41,6 +41,12 @@ class BadInput(CellTest):
             port = taken.getsockname()[1]
             self.expect_refused(self.run_daemon(f"server.port={port}"), str(port))
 
+    def test_output_that_cannot_be_written(self):
+        for redirection in (">/dev/full", ">&-"):
+            ended = subprocess.run(["sh", "-c", f'exec "$0" config-reference {redirection}', BIN / "calibrd"],
+                                   stderr=subprocess.PIPE, text=True, timeout=20, check=False)
+            self.expect_refused(ended, "stdout")
+
     def test_a_mistyped_key_is_named_with_its_line_and_the_nearest_name(self):
         config = self.folder / "typo.toml"
         config.write_text('[robot]\nurdf = "a.urdf"\nhots = "127.0.0.1"\n')
