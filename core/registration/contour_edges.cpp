@@ -78,6 +78,14 @@ Observation observe(const RegistrationView& view, int link, const ContourPoint& 
   return o;
 }
 
+std::optional<Edge> find_edge(const RegistrationView& view, const CameraModel& camera,
+                              const Pose& T_base_sensor, const ContourPoint& point,
+                              const ContourSettings& settings) {
+  if (view.image.empty()) return find_depth_step(view, camera, point, settings);
+  return settings.fit_profile ? fit_profile(view, camera, T_base_sensor, point, settings)
+                              : find_step(view, camera, point, settings);
+}
+
 bool is_contour(const VirtualMeasurement& m, int x, int y) {
   const auto row = static_cast<std::size_t>(m.width);
   const std::size_t i = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
@@ -98,11 +106,10 @@ void ContourTally::merge(const ContourTally& other) {
 void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
                            const CameraModel& camera, const Pose& T_base_sensor,
                            const ContourSettings& settings, NormalEquations& equations, ContourTally& tally) {
-  if (view.image.empty()) return;
   const int blocks_per_row = camera.width / kBlockSide + 1;
   for (int y = kMargin; y + kMargin < camera.height; ++y) {
     for (int x = kMargin; x + kMargin < camera.width; ++x) {
-      if ((x + y) % settings.stride != 0 || !is_contour(prediction, x, y)) continue;
+      if (!is_contour(prediction, x, y) || (x + y) % settings.stride != 0) continue;
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       const float z = prediction.depth_m[i];
@@ -111,13 +118,12 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
       if (!outward) continue;
       const auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
       if (!point) continue;
-      ++tally.predicted;
-      const auto edge = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
-                                             : find_step(view, camera, *point, settings);
+      tally.predicted += view.image.empty() ? 0 : 1;
+      const auto edge = find_edge(view, camera, T_base_sensor, *point, settings);
       if (!edge) continue;
       const Observation o = observe(view, prediction.link[i], *point, *edge, camera, T_base_sensor, settings);
       if (o.robust_weight <= 0) continue;
-      ++tally.found;
+      tally.found += view.image.empty() ? 0 : 1;
       tally.residuals_px.push_back(static_cast<float>(o.residual));
       tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
       equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));

@@ -18,7 +18,7 @@ struct ContourSettings {
 };
 
 struct ContourTally {
-  std::size_t predicted = 0;  ///< contour points looked at
+  std::size_t predicted = 0;  ///< contour points looked at in images
   std::size_t found = 0;      ///< of them with an image edge within the kernel
   std::vector<float> residuals_px;
   std::vector<float> whitened;  ///< residual / sigma
@@ -26,9 +26,9 @@ struct ContourTally {
 };
 
 /// Residuals across the line of sight, which range cannot give: the robot's occluding contours are predicted
-/// by the virtual sensor, and image edges are searched along their normals (Drummond & Cipolla 2002). Needs
-/// no mask. `prediction` must be what `view.cell` shows from `T_base_sensor`. Does nothing when the view has
-/// no image.
+/// by the virtual sensor, and image edges are searched along their normals (Drummond & Cipolla 2002); depth
+/// edges where the view has no image. Needs no mask. `prediction` must be what `view.cell` shows from
+/// `T_base_sensor`.
 void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
                            const CameraModel& camera, const Pose& T_base_sensor,
                            const ContourSettings& settings, NormalEquations& equations, ContourTally& tally);

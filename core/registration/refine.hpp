@@ -17,6 +17,7 @@ struct RefineSettings {
   double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
   double period_prior_m = 0.08;     ///< and of its period about the best candidate
   double contour_shift_prior_px = 0.3;
+  double depth_contour_shift_prior_px = 2;  ///< of depth edges: stereo fattens, time of flight frays
   double joint_zero_prior = 1e-3;  ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
@@ -35,9 +36,9 @@ struct Refinement {
       Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
   double contour_shift_px = 0;             ///< image edges lie this far outside the predicted contours
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  double last_step_sigmas = 0;             ///< length of the last step against the uncertainty of the result
-  double residual_rms_m = 0;               ///< of the range residuals that agree
-  double sigma_factor = 1;                 ///< noise found over noise expected
+  double last_step_sigmas = 0;   ///< drift of the pose over the last steps, in its own standard deviations
+  double residual_rms_m = 0;     ///< of the range residuals that agree
+  double sigma_factor = 1;       ///< noise found over noise expected
   double range_correlation = 1;  ///< times that range errors are less independent than their number says
   double contour_correlation = 1;
   double weakest_eigenvalue = 0;  ///< smallest eigenvalue of the pose information (m⁻², rotation at 1 m)
