@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/paper/paper_error.hpp"
+
+namespace calibrd {
+namespace {
+
+class PaperErrorCategory final : public std::error_category {
+ public:
+  const char* name() const noexcept override { return "paper"; }
+  std::string message(int value) const override {
+    switch (static_cast<PaperError>(value)) {
+      case PaperError::robot_not_found:
+        return "no measured points in the region of interest; is the guess right, or the region too small?";
+      case PaperError::pcl_missing:
+        return "the paper's method needs this shared object, and PCL's libraries that it is linked to; "
+               "install or "
+               "build it beside the programs, or use the method full";
+      case PaperError::pcl_failed:
+        return "PCL's ICP found too few correspondences; give a better guess";
+    }
+    return "unknown error";
+  }
+};
+
+}  // namespace
+
+const std::error_category& paper_error_category() {
+  static const PaperErrorCategory category;
+  return category;
+}
+
+std::string paper_error_name(const Error& error) {
+  switch (static_cast<PaperError>(error.code.value())) {
+    case PaperError::robot_not_found:
+      return "robot_not_found";
+    case PaperError::pcl_missing:
+      return "pcl_missing";
+    case PaperError::pcl_failed:
+      return "icp_failed";
+  }
+  return "unknown";
+}
+
+}  // namespace calibrd
