@@ -18,6 +18,12 @@ class PaperErrorCategory final : public std::error_category {
                "build it beside the programs, or use the method full";
       case PaperError::pcl_failed:
         return "PCL's ICP found too few correspondences; give a better guess";
+      case PaperError::bad_region:
+        return "a region of interest is six numbers between commas, x0,y0,z0,x1,y1,z1 in the sensor frame "
+               "(m), "
+               "the first three smaller than the last three";
+      case PaperError::other_method:
+        return "this belongs to the paper's method; give --method paper as well, or leave it out";
     }
     return "unknown error";
   }
@@ -38,6 +44,10 @@ std::string paper_error_name(const Error& error) {
       return "pcl_missing";
     case PaperError::pcl_failed:
       return "icp_failed";
+    case PaperError::bad_region:
+      return "bad_region";
+    case PaperError::other_method:
+      return "other_method";
   }
   return "unknown";
 }

@@ -8,8 +8,8 @@
 
 namespace calibrd {
 
-/// Why the paper's method gives no pose.
-enum class PaperError { robot_not_found = 1, pcl_missing, pcl_failed };
+/// Why the paper's method gives no pose, or what is wrong with its options.
+enum class PaperError { robot_not_found = 1, pcl_missing, pcl_failed, bad_region, other_method };
 
 const std::error_category& paper_error_category();
 
