@@ -17,7 +17,7 @@ Result<PaperFit> fit_by_paper(const RobotModel& robot, const CameraModel& camera
   const Points model = moved(T_base_virtual.inverse(), model_base);
   const Region region = settings.region_sensor
                             ? Region{Pose::Identity(), *settings.region_sensor}
-                            : Region{T_base_virtual, widened_box(model_base, settings.region_margin_m)};
+                            : Region{T_base_virtual, region_of_robot(model_base, settings.region_margin_m)};
   const Points measured = measured_in(region, camera, view);
   if (measured.size() < kFewestPoints || model.size() < kFewestPoints)
     return fail(PaperError::robot_not_found);

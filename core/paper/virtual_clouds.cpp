@@ -45,7 +45,7 @@ Points seen_by_three_sensors(const RobotModel& robot, const CameraModel& camera,
                              const Pose& T_base_virtual) {
   PaperSettings few;
   few.model_points = kSamplesForTheMiddle;
-  const Eigen::Translation3d middle(widened_box(sampled_uniformly(robot, view, few), 0).center());
+  const Eigen::Translation3d middle(box_around(sampled_uniformly(robot, view, few)).center());
   VirtualCell cell(robot);
   cell.set_joints(view.joint_positions_rad);
   Points all;
@@ -74,10 +74,15 @@ Points moved(const Pose& T_to_from, const Points& points_from) {
   return points_to;
 }
 
-Eigen::AlignedBox3d widened_box(const Points& points, double margin_m) {
+Eigen::AlignedBox3d box_around(const Points& points) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& p : points) box.extend(p.cast<double>());
-  box.min().array() -= margin_m;
+  return box;
+}
+
+Eigen::AlignedBox3d region_of_robot(const Points& points_base, double margin_m) {
+  Eigen::AlignedBox3d box = box_around(points_base);
+  box.min() += margin_m * Eigen::Vector3d(-1, -1, 1);
   box.max().array() += margin_m;
   return box;
 }

@@ -34,7 +34,11 @@ Points measured_in(const Region& region, const CameraModel& camera, const View& 
 
 Points moved(const Pose& T_to_from, const Points& points_from);
 
-/// The box around the points, larger by `margin_m` on each side.
-Eigen::AlignedBox3d widened_box(const Points& points, double margin_m);
+Eigen::AlignedBox3d box_around(const Points& points);
+
+/// The box around the robot's points (base frame), larger by `margin_m` on each side, but smaller by as much
+/// at the bottom: what the robot stands on is left out (section IV.A: "with the exception of a flat work
+/// platform surface").
+Eigen::AlignedBox3d region_of_robot(const Points& points_base, double margin_m);
 
 }  // namespace calibrd

@@ -15,6 +15,7 @@ keeps one of two weak symbols of the same name, without a word, whichever Boost 
 usage: boost_symbols.py BUILD_DIRECTORY NINJA
 """
 
+import os
 import re
 import subprocess
 import sys
@@ -33,18 +34,19 @@ class BoostUse(NamedTuple):
     both: list[str]
 
 
-def side_of(header: str) -> str | None:
+def side_of(header: str, build: Path) -> str | None:
     if "/boost/" not in header:
         return None
-    return SYSTEM if header.startswith("/usr/include/boost/") else PRIVATE
+    path = os.path.normpath(build / header)  # ccache may make any path relative to the build directory
+    return SYSTEM if path.startswith("/usr/include/boost/") else PRIVATE
 
 
-def sort_objects(ninja_deps: str) -> BoostUse:
+def sort_objects(ninja_deps: str, build: Path) -> BoostUse:
     """Reads `ninja -t deps`: an object per paragraph, then an indented line per header."""
     use = BoostUse([], [], [])
     for paragraph in ninja_deps.split("\n\n"):
         first, *headers = paragraph.strip().splitlines() or [""]
-        sides = {side_of(header.strip()) for header in headers} - {None}
+        sides = {side_of(header.strip(), build) for header in headers} - {None}
         name = first.split(":")[0]
         if sides == {SYSTEM, PRIVATE}:
             use.both.append(name)
@@ -96,7 +98,7 @@ def readable(symbols: set[str]) -> list[str]:
 
 def check(build: Path, ninja: str) -> tuple[list[str], str]:
     """What is wrong, and what was looked at."""
-    use = sort_objects(run(ninja, "-t", "deps", cwd=build))
+    use = sort_objects(run(ninja, "-t", "deps", cwd=build), build)
     if not use.private:
         return [], f"one Boost only: {len(use.system)} objects use the system's, none a private one"
     programs = [path for path in sorted((build / "bin").glob("*")) if path.is_file()]
@@ -116,7 +118,7 @@ def main() -> int:
     if len(sys.argv) != 3:
         print(__doc__, file=sys.stderr)
         return 2
-    found, looked_at = check(Path(sys.argv[1]), sys.argv[2])
+    found, looked_at = check(Path(sys.argv[1]).resolve(), sys.argv[2])
     print("\n".join([looked_at, *found[:50]]))
     return 1 if found else 0
 

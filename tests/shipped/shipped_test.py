@@ -27,6 +27,9 @@ c.o: #deps 2, deps mtime 1 (VALID)
 
 d.o: #deps 1, deps mtime 1 (VALID)
     ../d.cpp
+
+e.o: #deps 1, deps mtime 1 (VALID)
+    ../../usr/include/boost/config.hpp
 """
 
 DEPS_OF_TWO = ("theirs.o: #deps 1\\n    /usr/include/boost/version.hpp\\n\\n"
@@ -66,8 +69,8 @@ class LinkedLibraries(unittest.TestCase):
 
 class BoostSymbols(unittest.TestCase):
     def test_sorts_objects_by_the_boost_they_saw(self):
-        use = sort_objects(DEPS)
-        self.assertEqual((use.system, use.private, use.both), (["a.o"], ["b.o"], ["c.o"]))
+        use = sort_objects(DEPS, Path("/src/build"))
+        self.assertEqual((use.system, use.private, use.both), (["a.o", "e.o"], ["b.o"], ["c.o"]))
 
     def test_reads_weak_symbols_of_boost_alone(self):
         nm = "00 W _ZN5boost1fEv\n00 V _ZTIN5boost1AE\n00 u _ZN5boost1gE\n00 T _ZN5boost1hEv\n00 W _ZN3stdv\n"

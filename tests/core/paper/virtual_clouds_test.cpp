@@ -45,7 +45,7 @@ TEST(VirtualClouds, ThreeSensorsSeeMoreThanOneAndNothingThatIsInside) {
   const Pose first = true_T_base_sensor();
   const Points points = seen_by_three_sensors(test_arm(), ideal_kinect2(), view, first);
   ASSERT_GT(points.size(), 10000U);
-  const Eigen::Vector3d middle = widened_box(sampled_uniformly(test_arm(), view, {}), 0).center();
+  const Eigen::Vector3d middle = box_around(sampled_uniformly(test_arm(), view, {})).center();
   std::vector<bool> seen_by_any(points.size());
   for (const double turn_rad : {0.0, 2.0943951, 4.1887902}) {
     const Pose sensor = Eigen::Translation3d(middle) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) *
@@ -56,6 +56,12 @@ TEST(VirtualClouds, ThreeSensorsSeeMoreThanOneAndNothingThatIsInside) {
     for (std::size_t i = 0; i < seen.size(); ++i) seen_by_any[i] = seen_by_any[i] || seen[i];
   }
   EXPECT_GT(share(seen_by_any), 0.99);
+}
+
+TEST(VirtualClouds, TheRobotsRegionLeavesOutWhatItStandsOn) {
+  const Eigen::AlignedBox3d box = region_of_robot({{-0.2F, -0.3F, 0}, {0.4F, 0.5F, 1}}, 0.1);
+  EXPECT_TRUE(box.min().isApprox(Eigen::Vector3d(-0.3, -0.4, 0.1), 1e-6));
+  EXPECT_TRUE(box.max().isApprox(Eigen::Vector3d(0.5, 0.6, 1.1), 1e-6));
 }
 
 TEST(VirtualClouds, TheRegionHoldsWhatLiesInItsOwnFrame) {
