@@ -13,6 +13,7 @@
 #include "core/global/moving_surface.hpp"
 #include "core/global/point_groups.hpp"
 #include "core/global/rotation_grid.hpp"
+#include "core/registration/coarse_align.hpp"
 
 namespace calibrd {
 namespace {
@@ -173,6 +174,23 @@ std::vector<FieldFit> quick_fits(const Evidence& evidence, std::size_t rotations
   return fit_all(evidence, first_guesses(evidence, rotations), {0.3, 0.1, 8, stride_for(evidence, 150)});
 }
 
+std::vector<StartHypothesis> ranked(std::span<const RegistrationView> views, const CameraModel& camera,
+                                    const Evidence& evidence, std::span<const Pose> poses) {
+  std::vector<std::vector<std::uint8_t>> masks;
+  for (const MovingPoints& moving : evidence.moving) masks.push_back(moving.mask);
+  const std::vector<RenderScore> scores = render_scores(views, masks, camera, poses, {});
+  std::vector<StartHypothesis> starts;
+  for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
+  std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
+  std::vector<StartHypothesis> distinct;
+  for (const StartHypothesis& start : starts)
+    if (std::ranges::none_of(distinct, [&](const StartHypothesis& better) {
+          return is_same(start.T_base_sensor, better.T_base_sensor);
+        }))
+      distinct.push_back(start);
+  return distinct;
+}
+
 /// The best `count` of the fits, fitted closer, and the better half of them judged by rendering.
 std::vector<StartHypothesis> judged(std::span<const RegistrationView> views, const CameraModel& camera,
                                     const Evidence& evidence, const std::vector<FieldFit>& fits,
@@ -180,15 +198,25 @@ std::vector<StartHypothesis> judged(std::span<const RegistrationView> views, con
   const FieldFitSettings close{0.12, 0.04, 10, stride_for(evidence, 600)};
   const std::vector<FieldFit> best = distinct_best(fit_all(evidence, distinct_best(fits, count), close),
                                                    std::max<std::size_t>(1, count / 2));
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (const MovingPoints& moving : evidence.moving) masks.push_back(moving.mask);
   std::vector<Pose> poses;
   for (const FieldFit& fit : best) poses.push_back(fit.T_base_sensor);
-  const std::vector<RenderScore> scores = render_scores(views, masks, camera, poses, {});
-  std::vector<StartHypothesis> starts;
-  for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
-  std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
-  return starts;
+  return ranked(views, camera, evidence, poses);
+}
+
+/// The best few pulled onto the measured surface, and judged again. Fits to moving points that are half a
+/// person stop short of it.
+std::vector<StartHypothesis> polished(std::span<const RegistrationView> views, const CameraModel& camera,
+                                      const Evidence& evidence, std::vector<StartHypothesis> starts) {
+  constexpr std::size_t kPolished = 6;
+  CoarseSettings settings;
+  settings.iterations = 12;
+  settings.reduction = 8;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Pose& pose = starts[i].T_base_sensor;
+    poses.push_back(i < kPolished ? coarse_align(views, camera, pose, settings) : pose);
+  }
+  return ranked(views, camera, evidence, poses);
 }
 
 }  // namespace
@@ -201,7 +229,7 @@ std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views
   std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
   // People who walk by can hide the truth among fits that explain them better: then all are looked at.
   if (starts.front().score.value() < settings.convincing)
-    starts = judged(views, camera, evidence, fits, fits.size());
+    starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()));
   return starts;
 }
 

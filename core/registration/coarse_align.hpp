@@ -18,7 +18,7 @@ struct CoarseSettings {
 /// Pulls a rough pose (some centimetres, some degrees off) to within reach of the projective refinement:
 /// nearest measured neighbour of every *visible* model point, point-to-plane, annealed kernel, all views
 /// jointly. Model to measurement, not the other way round: clutter then attracts nothing.
-Pose coarse_align(std::span<RegistrationView> views, const CameraModel& camera,
+Pose coarse_align(std::span<const RegistrationView> views, const CameraModel& camera,
                   const Pose& guess_T_base_sensor, const CoarseSettings& settings);
 
 }  // namespace calibrd

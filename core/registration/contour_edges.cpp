@@ -102,7 +102,7 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
   const int blocks_per_row = camera.width / kBlockSide + 1;
   for (int y = kMargin; y + kMargin < camera.height; ++y) {
     for (int x = kMargin; x + kMargin < camera.width; ++x) {
-      if ((x + y) % settings.stride != 0 || !is_contour(prediction, x, y)) continue;
+      if (!is_contour(prediction, x, y) || (x + y) % settings.stride != 0) continue;
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       const float z = prediction.depth_m[i];

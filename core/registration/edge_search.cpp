@@ -47,19 +47,23 @@ class ProfileModel {
                const ContourPoint& point, int reach)
       : reach_(reach) {
     const int fine_reach = reach * kFinePerSample + kBlurRadius + 1;
-    std::vector<Row> sharp;
-    sharp.reserve(static_cast<std::size_t>(2 * fine_reach));
+    std::vector<Row> sharp(static_cast<std::size_t>(2 * fine_reach), Row(0, 0, 1));
+    const Eigen::Vector2d inward = -point.outward;
     const float rim = static_cast<float>(point.p_sensor.z());
-    for (int k = -fine_reach; k < fine_reach; ++k) {
-      const Eigen::Vector2d p = point.pixel + kFine_px * (k + 0.5) * point.outward;
-      Row row(0, 0, 1);
-      if (k < 0) {
-        const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
-        const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
-        if (!beyond(hit.depth_m, rim))
-          row << 1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0;
+    // The cosine changes fast at the rim and slowly further in: cast few rays there and interpolate.
+    int from = 0;
+    Row at_from = light_at(view, camera, T_base_sensor, point.pixel + 0.5 * kFine_px * inward, rim);
+    sharp[static_cast<std::size_t>(fine_reach - 1)] = at_from;
+    while (from + 1 < fine_reach) {
+      const int to = std::min(from + 1 + from / 3, fine_reach - 1);
+      const Row at_to =
+          light_at(view, camera, T_base_sensor, point.pixel + kFine_px * (to + 0.5) * inward, rim);
+      for (int k = from + 1; k <= to; ++k) {
+        const double share = static_cast<double>(k - from) / (to - from);
+        sharp[static_cast<std::size_t>(fine_reach - 1 - k)] = (1 - share) * at_from + share * at_to;
       }
-      sharp.push_back(row);
+      from = to;
+      at_from = at_to;
     }
     blur(sharp, fine_reach);
   }
@@ -71,6 +75,14 @@ class ProfileModel {
   static constexpr int kFinePerSample = 2;
   static constexpr double kFine_px = kSampleStep_px / kFinePerSample;
   static constexpr int kBlurRadius = 10;  // fine steps
+
+  static Row light_at(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
+                      const Eigen::Vector2d& pixel, float rim_depth_m) {
+    const Eigen::Vector3d ray = camera.ray(pixel.x(), pixel.y());
+    const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
+    if (beyond(hit.depth_m, rim_depth_m)) return {0, 0, 1};
+    return {1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0};
+  }
 
   /// Weights of fine steps at odd half steps from a sample: a pixel's width, prepare_views' smoothing and
   /// bilinear sampling together blur by 0.78 px.

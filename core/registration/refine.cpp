@@ -18,7 +18,7 @@ namespace {
 /// One stage of the annealing: kernels and freedoms.
 struct Stage {
   int iterations;
-  int stride;
+  int stride;                // of pixels in both directions, and of contour pixels along the contour
   double range_kernel_m;     // 0: from the noise found
   double contour_search_px;  // 0: no contours yet
   bool fit_profile;          // fit modelled light profiles to the contours rather than find the steepest step
@@ -58,18 +58,21 @@ class Refiner {
   }
 
   Refinement run() {
-    const Stage stages[] = {{6, 2, 0.06, 0, false, false, false},
-                            {5, 2, 0.03, 10, false, true, false},
-                            {4, 1, 0, 5, false, true, false}};
-    const Stage last{settings_.final_iterations, 1, 0, 3, true, true, settings_.joint_zero_prior > 0};
+    const Stage stages[] = {{4, 3, 0.06, 0, false, false, false},
+                            {4, 3, 0.03, 10, false, true, false},
+                            {3, 2, 0, 5, false, true, false}};
+    const bool zeros = settings_.joint_zero_prior > 0;
+    const Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
+    const Stage last{3, 1, 0, 3, true, true, zeros};
     double progress = 0;
     for (const Stage& stage : stages) {
       run_stage(stage);
       progress += 0.25;
       if (settings_.keep_going && !settings_.keep_going(progress)) return result_;
     }
-    step(last, 0);
-    choose_period(last);
+    step(closing, 0);
+    choose_period(closing);
+    run_stage(closing);
     run_stage(last);
     finish(last);
     return result_;
@@ -88,7 +91,7 @@ class Refiner {
     // Once profiles are fitted, what lies several sigmas away is another edge.
     if (stage.fit_profile)
       contour.kernel_px = std::clamp(kKernelSigmas * contour_sigma_px_, 0.7, stage.contour_search_px);
-    contour.stride = 2;
+    contour.stride = stage.stride + 2;
     contour.fit_profile = stage.fit_profile;
     contour.shift_px = result_.contour_shift_px;
     std::vector<Sums> per_view(views_.size());
@@ -199,7 +202,10 @@ class Refiner {
     const ParameterMatrix information = with_priors(all, stage, gradient);
     // Image edges and pixels change sides between steps; halved steps settle that jitter.
     const double pace = iteration < kFullSteps ? 1.0 : 0.5;
-    const ParameterVector delta = pace * information.ldlt().solve(gradient);
+    const Eigen::LDLT<ParameterMatrix> solver(information);
+    const ParameterVector full_step = solver.solve(gradient);
+    const ParameterVector delta = pace * full_step;
+    note_step(full_step.head<6>(), solver);
     result_.T_base_sensor = perturbed(result_.T_base_sensor, delta.head<6>());
     DepthCorrection& c = result_.correction;
     c.offset_m += delta[kOffset];
@@ -214,8 +220,20 @@ class Refiner {
       result_.joint_zeros += delta.tail<kMaxJointZeros>();
       for (RegistrationView& view : views_) view.apply_zeros(result_.joint_zeros);
     }
-    result_.last_step_sigmas = std::sqrt(delta.dot(information * delta));
-    small_step_ = result_.last_step_sigmas < settings_.convergence_sigmas;
+    small_step_ = std::sqrt(delta.dot(information * delta)) < settings_.convergence_sigmas;
+  }
+
+  /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
+  /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
+  void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
+    constexpr std::size_t kRemembered = 3;
+    last_steps_.push_back(pose_step);
+    if (last_steps_.size() > kRemembered) last_steps_.erase(last_steps_.begin());
+    Vector6d mean = Vector6d::Zero();
+    for (const Vector6d& step : last_steps_) mean += step / static_cast<double>(last_steps_.size());
+    const ParameterMatrix covariance = information.solve(ParameterMatrix::Identity());
+    const Matrix6d of_pose = covariance.topLeftCorner<6, 6>();
+    result_.last_step_sigmas = std::sqrt(mean.dot(of_pose.ldlt().solve(mean)) / 6);
   }
 
   void finish(const Stage& stage) {
@@ -248,6 +266,7 @@ class Refiner {
   const RefineSettings& settings_;
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
+  std::vector<Vector6d> last_steps_;
   double period_start_m_ = 0;
   double contour_sigma_px_ = 0.5;
   bool small_step_ = false;

@@ -35,9 +35,9 @@ struct Refinement {
       Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
   double contour_shift_px = 0;             ///< image edges lie this far outside the predicted contours
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  double last_step_sigmas = 0;             ///< length of the last step against the uncertainty of the result
-  double residual_rms_m = 0;               ///< of the range residuals that agree
-  double sigma_factor = 1;                 ///< noise found over noise expected
+  double last_step_sigmas = 0;   ///< drift of the pose over the last steps, in its own standard deviations
+  double residual_rms_m = 0;     ///< of the range residuals that agree
+  double sigma_factor = 1;       ///< noise found over noise expected
   double range_correlation = 1;  ///< times that range errors are less independent than their number says
   double contour_correlation = 1;
   double weakest_eigenvalue = 0;  ///< smallest eigenvalue of the pose information (m⁻², rotation at 1 m)

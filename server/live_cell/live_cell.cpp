@@ -200,9 +200,9 @@ Estimator core_estimator(const RobotModel& model, const VirtualCell& cell) {
     return calibrate(model, camera, views, settings);
   };
   estimator.make_check = [&cell](const CameraModel& camera) -> CheckFunction {
-    return [camera, own = std::make_shared<VirtualCell>(cell)](const View& view, const Pose& T_base_sensor,
-                                                               const DepthCorrection& correction) {
-      return check_pose(*own, camera, view, T_base_sensor, correction);
+    return [checker = std::make_shared<PoseChecker>(cell, camera)](
+               const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
+      return checker->check(view, T_base_sensor, correction);
     };
   };
   return estimator;

@@ -51,7 +51,8 @@ RegistrationView view_with_one_step(const Board& board, int place, double step_a
                         JointAxes(board.robot, board.cell.link_poses()),
                         std::vector<float>(pixels, 0.0F),
                         std::vector<float>(pixels, 100.0F),
-                        1.0};
+                        1.0,
+                        std::make_shared<const PixelRays>(camera)};
   const int length = board.crossed_along_x ? camera.width : camera.height;
   for (int t = 0; t < length; ++t) {
     const int x = board.crossed_along_x ? t : place, y = board.crossed_along_x ? place : t;
