@@ -55,11 +55,16 @@ def line_across(y: float, left: float, colour: str, dash: str = "") -> str:
             + (f' stroke-dasharray="{dash}"' if dash else "") + "/>")
 
 
-def mark(x: float, y: float, colour: str, filled: bool, beyond: int) -> str:
-    style = f'stroke="{colour}" fill="{colour if filled else "none"}" fill-opacity="0.55"'
+def mark(x: float, y: float, column: int, filled: bool, beyond: int) -> str:
+    style = f'class="s{column}{"" if filled else " hollow"}"'
     if beyond:
         return f'<path d="M{x - 4:.1f} {y + 7 * beyond:.1f}h8l-4 {-7 * beyond}z" {style}/>'
     return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" {style}/>'
+
+
+def styles() -> str:
+    rules = [f".s{column}{{stroke:{series.colour};fill:{series.colour};fill-opacity:.55}}" for column, series in enumerate(DRAWN)]
+    return "<style>" + "".join(rules) + ".hollow{fill:none}</style>"
 
 
 def panel(lines: list[dict], quantity: Quantity, axis: int, left: float) -> list[str]:
@@ -81,22 +86,22 @@ def panel(lines: list[dict], quantity: Quantity, axis: int, left: float) -> list
                 value = line[quantity.key][axis]
                 beyond = (value > limit) - (value < -limit)
                 trusted = series is PAPER or line["verdict"] == "accepted"
-                parts.append(mark(centre + dice.uniform(-22, 22), height_of(max(-limit, min(limit, value))), series.colour,
-                                  trusted, beyond))
+                parts.append(mark(centre + dice.uniform(-22, 22), height_of(max(-limit, min(limit, value))), column, trusted,
+                                  beyond))
     return parts
 
 
 def figure(lines: list[dict], quantity: Quantity, title: str) -> str:
     width, height = LEFT + 3 * PANEL + 2 * GAP + 16, TOP + HEIGHT + 76
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif">',
-             f'<rect width="{width}" height="{height}" fill="#fff"/>', text(LEFT, 24, title, 15, "start"),
+             styles(), f'<rect width="{width}" height="{height}" fill="#fff"/>', text(LEFT, 24, title, 15, "start"),
              text(LEFT, 44, f"error in {quantity.unit}; red: largest published error, {quantity.published:g} {quantity.unit}; "
                             "triangle: farther off than is drawn; hollow: not accepted", 11, "start", "#555")]
     for axis in range(3):
         parts += panel(lines, quantity, axis, LEFT + axis * (PANEL + GAP))
     for column, series in enumerate(DRAWN):
         x = LEFT + column * (width - LEFT) / len(DRAWN)
-        parts += [mark(x + 4, TOP + HEIGHT + 46, series.colour, True, 0),
+        parts += [mark(x + 4, TOP + HEIGHT + 46, column, True, 0),
                   text(x + 12, TOP + HEIGHT + 50, series.name, 10, "start")]
     return "\n".join([*parts, "</svg>", ""])
 
