@@ -19,7 +19,7 @@ struct VerdictSettings {
   double max_residual_rms_m = 0.02;
   double max_offset_m = 0.06;  ///< a range offset beyond this is no sensor's: intrinsics or model are wrong
   double max_scale_error = 0.015;  ///< likewise of the range scale
-  double max_joint_zero = 4e-3;    ///< joint zeros beyond this (rad or m): wrong zeros, joint order or model
+  double max_joint_zero = 3e-3;    ///< joint zeros beyond this (rad or m): wrong zeros, joint order or model
   double max_last_step_sigmas = 1.0;  ///< a solution that still moves by its own uncertainty has not settled
 };
 

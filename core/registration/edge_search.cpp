@@ -170,13 +170,42 @@ std::optional<Edge> find_step(const RegistrationView& view, const CameraModel& c
   return best;
 }
 
+std::optional<Edge> find_depth_step(const RegistrationView& view, const CameraModel& camera,
+                                    const ContourPoint& point, const ContourSettings& settings) {
+  constexpr double kDepthEdgeSigma_px = 1.0;
+  constexpr int kSure = 4;  // samples in a row on the robot, and off it
+  const int reach = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px)) + kSure;
+  const auto rim = static_cast<float>(point.p_sensor.z());
+  int on_robot = 0, off_robot = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    const Eigen::Vector2d p = point.pixel + kSampleStep_px * k * point.outward;
+    const auto x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) return std::nullopt;
+    const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                                 static_cast<std::size_t>(x)];
+    if (z > 0 && z < rim - kContourStep_m) return std::nullopt;  // something in front
+    const bool is_robot = z > 0 && z < rim + kContourStep_m;
+    if (is_robot) {
+      on_robot += 1 + off_robot;  // a short gap is a drop-out
+      off_robot = 0;
+      continue;
+    }
+    if (on_robot < kSure) {
+      on_robot = 0;
+      continue;
+    }
+    if (++off_robot == kSure) return Edge{kSampleStep_px * (k - kSure + 0.5), kDepthEdgeSigma_px};
+  }
+  return std::nullopt;
+}
+
 std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel& camera,
                                 const Pose& T_base_sensor, const ContourPoint& point,
                                 const ContourSettings& settings) {
   constexpr double kWindow_px = 4;
   constexpr double kShiftStep_px = kSampleStep_px;
   constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
-  constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
+  constexpr double kModelFloor_px = 0.30;  // what the light model itself gets wrong
   const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
   const auto grey = sample_profile(view, camera, point, reach);
   if (!grey) return std::nullopt;

@@ -56,7 +56,7 @@ ParameterVector jacobian_of(const RegistrationView& view, int link, const Pose& 
   const double factor = -correction.slope(z) * z / n.dot(p_sensor);
   ParameterVector jacobian;
   jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z), 0.0,
-      -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
+      0.0, -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
   return jacobian;
 }
 

@@ -100,6 +100,6 @@ struct ScenesOptions {
   bool bound = false;
   unsigned jobs = 1;
 };
-int run_scenes(const ScenesOptions& options);
+int run_scenes(ScenesOptions options);
 
 }  // namespace calibrd::bench

@@ -79,9 +79,9 @@ TEST_P(ContourJacobian, EqualsTheSlopeOfTheRenderedOutline) {
                           T_base_sensor, settings, equations, tally);
     ASSERT_EQ(tally.found, 1U) << "of " << tally.predicted;
     const ParameterMatrix information = equations.information().selfadjointView<Eigen::Lower>();
-    const double weight = information(kContourShift, kContourShift);  // w J Jᵀ, where J is 1 for the shift
-    const ParameterVector jacobian = information.col(kContourShift) / weight;
-    EXPECT_NEAR(equations.gradient()[kContourShift] / weight, kEdgeOutside_px, 0.25);  // outward is positive
+    const double weight = information(kImageShift, kImageShift);  // w J Jᵀ, where J is 1 for the shift
+    const ParameterVector jacobian = information.col(kImageShift) / weight;
+    EXPECT_NEAR(equations.gradient()[kImageShift] / weight, kEdgeOutside_px, 0.25);  // outward is positive
 
     constexpr double kStep = 1e-3;
     Vector6d slope;
