@@ -8,7 +8,7 @@
 
 #include "core/calibration/verdict.hpp"
 #include "core/global/find_start.hpp"
-#include "core/paper/paper_method.hpp"
+#include "core/paper/calibrate_by_paper.hpp"
 #include "core/registration/coarse_align.hpp"
 #include "core/registration/refine.hpp"
 
@@ -44,26 +44,6 @@ CalibrationResult rejected(Reason reason, std::size_t views) {
   CalibrationResult result;
   result.views = static_cast<int>(views);
   result.reasons.push_back(std::move(reason));
-  return result;
-}
-
-/// The published method knows no uncertainty and no verdict of its own: its pose is never more than
-/// uncertain.
-CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera,
-                                     std::span<const View> views, const Pose& guess) {
-  const auto fit = fit_by_paper(robot, camera, views.front(), guess, {});
-  if (!fit) return rejected({"robot_not_found", "no measured points near the robot; is the guess right?"}, 1);
-  CalibrationResult result;
-  result.verdict = Verdict::uncertain;
-  result.T_base_sensor = fit->T_base_sensor;
-  result.residual_rms_m = fit->rms_m;
-  result.views = 1;
-  result.reasons.push_back(
-      {"paper_method", "the paper's method gives no uncertainty; its pose is for comparison only"});
-  if (!fit->converged)
-    result.reasons.push_back({"not_converged", "ICP ended before its correspondences settled"});
-  if (views.size() > 1)
-    result.reasons.push_back({"first_view_only", "the paper's method uses one posture: the first view"});
   return result;
 }
 
@@ -119,10 +99,8 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
                             const CalibrationSettings& settings) {
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
-  if (settings.method == Method::paper && !settings.guess_T_base_sensor)
-    return rejected({"guess_needed", "the paper's method needs a rough pose to start from"}, views.size());
   CalibrationResult result = settings.method == Method::paper
-                                 ? calibrate_by_paper(robot, camera, views, *settings.guess_T_base_sensor)
+                                 ? calibrate_by_paper(robot, camera, views, settings)
                                  : calibrate_in_full(robot, camera, views, settings);
   result.used_guess = settings.guess_T_base_sensor.has_value();
   result.time_total_ms =
