@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kCoarseWidth = 128;
 /// Neighbouring pixels err alike: so many of them say what one would.
-constexpr double kCorrelation = 4;
+constexpr double kCorrelation = 10;
 
 CameraModel coarser(const CameraModel& camera, int reduction) {
   CameraModel coarse = camera;
@@ -66,6 +66,7 @@ ExpectedViews::ExpectedViews(const VirtualCell& cell, const CameraModel& camera,
                              const PlanningSettings& settings)
     : settings_(settings),
       reduction_(std::max(1, camera.width / kCoarseWidth)),
+      least_pixels_(static_cast<std::size_t>(settings.min_robot_share * camera.width * camera.height)),
       coarse_(coarser(camera, reduction_)),
       noise_camera_(with_fine_pixels(coarse_, camera)),
       T_base_sensor_(T_base_sensor),
@@ -107,21 +108,34 @@ ExpectedViews::Seen ExpectedViews::see(std::size_t slot, const std::vector<doubl
   return {static_cast<double>(pixels) / kCorrelation * information, tally.measured * pixels};
 }
 
-/// Covariance of the pose that is right for the joints as reported: what the refinement publishes.
+/// From joint zeros to the pose that is right for the joints as reported, which is what is published.
+ExpectedViews::PoseByZeros ExpectedViews::by_zeros(std::size_t views) const {
+  return reported_joints_map(std::span(views_).first(views), std::span(predictions_).first(views), coarse_,
+                             T_base_sensor_);
+}
+
 Matrix6d ExpectedViews::published(const ParameterMatrix& information, std::size_t views) const {
   Eigen::Matrix<double, 6, kParameters> map = Eigen::Matrix<double, 6, kParameters>::Zero();
   map.leftCols<6>().setIdentity();
-  if (views > 0)
-    map.rightCols<kMaxJointZeros>() = reported_joints_map(
-        std::span(views_).first(views), std::span(predictions_).first(views), coarse_, T_base_sensor_);
+  map.rightCols<kMaxJointZeros>() = by_zeros(views);
   return map * information.ldlt().solve(map.transpose());
 }
 
-ExpectedViews::Expectation ExpectedViews::after(const std::vector<double>& posture) {
+/// Where no posture is known to have been seen, what is known is of the published pose, not of the pose and
+/// the zeros that it came from: the new information is put in its terms.
+Matrix6d ExpectedViews::after_one(const ParameterMatrix& seen) const {
+  ParameterMatrix to_published = ParameterMatrix::Identity();
+  to_published.topRightCorner<6, kMaxJointZeros>() = -by_zeros(1);
+  const ParameterMatrix information = information_ + to_published.transpose() * seen * to_published;
+  return information.ldlt().solve(ParameterMatrix::Identity()).topLeftCorner<6, 6>();
+}
+
+std::optional<ExpectedViews::Expectation> ExpectedViews::after(const std::vector<double>& posture) {
   const Seen seen = see(views_.size() - 1, posture);
-  if (seen.robot_pixels < settings_.min_robot_pixels) return {Matrix6d::Identity(), seen.robot_pixels};
+  if (seen.robot_pixels < least_pixels_) return std::nullopt;
+  if (views_.size() == 1) return Expectation{after_one(seen.information), seen.robot_pixels};
   const Matrix6d expected = published(information_ + seen.information, views_.size());
-  return {correction_ * expected * correction_.transpose(), seen.robot_pixels};
+  return Expectation{correction_ * expected * correction_.transpose(), seen.robot_pixels};
 }
 
 }  // namespace calibrd

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,22 +23,27 @@ class ExpectedViews {
 
   /// The covariance expected once the posture is seen, too, and how much of the robot it shows.
   struct Expectation {
-    Matrix6d covariance = Matrix6d::Identity();
+    Matrix6d covariance;
     std::size_t robot_pixels = 0;  ///< on the full grid, measurable ones
   };
-  Expectation after(const std::vector<double>& posture);
+  /// Nothing: too little of the robot is in view.
+  std::optional<Expectation> after(const std::vector<double>& posture);
 
  private:
   struct Seen {
     ParameterMatrix information = ParameterMatrix::Zero();
     std::size_t robot_pixels = 0;
   };
+  using PoseByZeros = Eigen::Matrix<double, 6, kMaxJointZeros>;
   Seen see(std::size_t slot, const std::vector<double>& posture);
+  PoseByZeros by_zeros(std::size_t views) const;
   Matrix6d published(const ParameterMatrix& information, std::size_t views) const;
+  Matrix6d after_one(const ParameterMatrix& seen) const;
   void compare_with_known(const Matrix6d& covariance);
 
   const PlanningSettings settings_;
   const int reduction_;
+  const std::size_t least_pixels_;
   const CameraModel coarse_, noise_camera_;
   const Pose T_base_sensor_;
   std::vector<RegistrationView> views_;  // of the postures seen, and a last one for a candidate

@@ -28,9 +28,9 @@ std::optional<Choice> best_choice(const PostureRules& rules, ExpectedViews& view
     if (!rules.allow(posture)) continue;
     ++looked_at;
     const auto expectation = views.after(posture);
-    if (expectation.robot_pixels < settings.min_robot_pixels) continue;
-    if (!best || expectation.covariance.trace() < best->expectation.covariance.trace())
-      best = Choice{std::move(posture), expectation};
+    if (!expectation) continue;
+    if (!best || expectation->covariance.trace() < best->expectation.covariance.trace())
+      best = Choice{std::move(posture), *expectation};
   }
   return best;
 }

@@ -16,10 +16,10 @@ struct PlanningSettings {
   double limit_margin = 0.05;                         ///< kept from the ends of the joints' ranges, rad or m
   /// Links that are not neighbours stay this far apart, or half as far as the robot was seen to hold them.
   double self_clearance_m = 0.03;
-  double min_change_rad = 0.17;  ///< some joint differs this much from every posture seen
-  double min_range_m = 0.5;      ///< no moving link nearer to the sensor
-  double max_range_m = 4.5;      ///< what lies further away is not measured
-  std::size_t min_robot_pixels = 2500;
+  double min_change_rad = 0.17;    ///< some joint differs this much from every posture seen
+  double min_range_m = 0.5;        ///< no moving link nearer to the sensor
+  double max_range_m = 4.5;        ///< what lies further away is not measured
+  double min_robot_share = 0.012;  ///< of the picture must show the robot, measurably
 };
 
 }  // namespace calibrd
