@@ -16,6 +16,9 @@ namespace {
 constexpr int kCoarseWidth = 128;
 /// Neighbouring pixels err alike: so many of them say what one would.
 constexpr double kCorrelation = 10;
+/// What range would leave open the outline may have fixed: nothing counts as known worse than to this many of
+/// the sigmas that were found.
+constexpr double kLooseness = 3;
 
 CameraModel coarser(const CameraModel& camera, int reduction) {
   CameraModel coarse = camera;
@@ -82,11 +85,11 @@ ExpectedViews::ExpectedViews(const VirtualCell& cell, const CameraModel& camera,
 /// uncertainty (noise, correlation, what hides the robot) is carried over. Without postures the covariance
 /// is all that is known.
 void ExpectedViews::compare_with_known(const Matrix6d& covariance) {
+  const bool any_seen = views_.size() > 1;
+  const Matrix6d known = covariance.ldlt().solve(Matrix6d::Identity());
+  information_.topLeftCorner<6, 6>() += known / (any_seen ? kLooseness * kLooseness : 1);
   correction_.setIdentity();
-  if (views_.size() == 1) {
-    information_.topLeftCorner<6, 6>() += covariance.ldlt().solve(Matrix6d::Identity());
-    return;
-  }
+  if (!any_seen) return;
   const Matrix6d expected = published(information_, views_.size() - 1);
   correction_ = square_root(covariance) * square_root(expected).inverse();
 }

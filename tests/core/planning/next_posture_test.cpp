@@ -77,7 +77,8 @@ void expect_kept_promise(std::size_t count, bool images) {
 
 TEST(NextPosture, KeepsWhatItPromisesAfterOnePosture) { expect_kept_promise(1, false); }
 TEST(NextPosture, KeepsWhatItPromisesAfterTwoPostures) { expect_kept_promise(2, false); }
-TEST(NextPosture, KeepsWhatItPromisesWithImages) { expect_kept_promise(2, true); }
+TEST(NextPosture, KeepsWhatItPromisesAfterOnePostureWithImages) { expect_kept_promise(1, true); }
+TEST(NextPosture, KeepsWhatItPromisesAfterTwoPosturesWithImages) { expect_kept_promise(2, true); }
 
 TEST(NextPosture, HelpsMoreThanAnyPosture) {
   double suggested = 0, any = 0;
