@@ -10,8 +10,8 @@
 #include "api/json/json_text.hpp"
 #include "api/json/pose_json.hpp"
 #include "api/json/strict_object.hpp"
-#include "api/pose/pose_numbers.hpp"
 #include "api/problem/api_error.hpp"
+#include "core/geometry/pose_numbers.hpp"
 
 namespace calibrd::api {
 namespace {

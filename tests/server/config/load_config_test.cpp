@@ -172,6 +172,11 @@ guess = [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]
   EXPECT_DOUBLE_EQ(loaded->config.sensors.at("k").guess_T_base_sensor->translation().y(), 0.25);
 }
 
+TEST_F(LoadConfig, GuessInMillimetresIsRefused) {
+  const auto text = failure(std::string(kSmallest) + "[sensors.k]\nguess = [1370, 730, 860, 0, 0, 0, 1]\n");
+  EXPECT_NE(text.find("metres"), std::string::npos) << text;
+}
+
 TEST_F(LoadConfig, RecordingAndDeviceExcludeEachOther) {
   const auto text = failure(std::string(kSmallest) +
                             "[sensors.k]\nfx = 1\nfy = 1\ncx = 1\ncy = 1\nuri = \"a\"\noni_file = \"b\"\n");
