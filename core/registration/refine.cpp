@@ -30,6 +30,9 @@ struct Stage {
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
 constexpr int kFullSteps = 5;
+/// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
+/// errors.
+constexpr double kMinEdgeScatter = 0.5;
 /// Chance lets the cost fall by as much through seven joint zeros once in twenty times.
 constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
@@ -142,7 +145,7 @@ class Refiner {
   NormalEquations contour_part(const ViewSums& sums) const {
     NormalEquations all;
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
-      const double scale = robust_sigma(sums.contour[k].tally.whitened);
+      const double scale = std::max(robust_sigma(sums.contour[k].tally.whitened), kMinEdgeScatter);
       all.merge(sums.contour[k].equations.scaled(1 / (scale * scale * edge_noise_[k].correlation)));
     }
     return all;
