@@ -58,8 +58,8 @@ class Refiner {
                             {4, 3, 0.03, 10, false, true, false},
                             {3, 2, 0, 5, false, true, false}};
     const bool zeros = settings_.joint_zero_prior > 0;
-    const Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
-    Stage last{3, 1, 0, 3, true, true, zeros};
+    Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
+    Stage last{5, 1, 0, 3, true, true, zeros};
     const Stage judged = last;  // what is known is known with the zeros free, whether they are used or not
     double progress = 0;
     for (const Stage& stage : stages) {
@@ -71,8 +71,9 @@ class Refiner {
     choose_period(closing);
     run_stage(closing);
     if (zeros && !are_zeros_significant()) {
-      last.free_zeros = false;
+      closing.free_zeros = last.free_zeros = false;
       set_zeros(JointZeros::Zero());
+      run_stage(closing);
     }
     run_stage(last);
     finish(judged);
@@ -243,7 +244,7 @@ class Refiner {
   /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
   /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
   void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
-    constexpr std::size_t kRemembered = 3;
+    constexpr std::size_t kRemembered = 2;
     last_steps_.push_back(pose_step);
     if (last_steps_.size() > kRemembered) last_steps_.erase(last_steps_.begin());
     Vector6d mean = Vector6d::Zero();

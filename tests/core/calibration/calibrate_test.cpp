@@ -157,7 +157,7 @@ TEST(CalibrateByPaper, IsNeverMoreThanUncertain) {
 
 // Depth edges are found to half a pixel: without noise most of them agree to nothing, and must not outweigh
 // everything else for that.
-TEST(Calibrate, DepthWithoutNoiseIsNoTrap) {
+TEST(CalibrateFrom, DepthWithoutNoiseIsNoTrap) {
   for (const double noise : {0.0, 0.1}) {
     SceneSettings scene;
     scene.clutter = true;
