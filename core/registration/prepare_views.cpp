@@ -68,7 +68,7 @@ double difference_noise(const std::vector<float>& image) {
 
 }  // namespace
 
-void RegistrationView::apply_zeros(const Eigen::Matrix<double, kMaxJointZeros, 1>& zeros) {
+void RegistrationView::apply_zeros(const JointZeros& zeros) {
   std::vector<double> positions = reported_joints;
   for (std::size_t j = 0; j < positions.size() && j < kMaxJointZeros; ++j)
     positions[j] += zeros[static_cast<Eigen::Index>(j)];

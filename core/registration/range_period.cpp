@@ -16,6 +16,9 @@ namespace {
 // Modulation of 16 to 120 MHz and its harmonics wiggle with periods of this order; longer ones pass for a
 // scale.
 constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.85, 0.97, 1.10, 1.25};
+/// Chance lets the cost fall by as much through an amplitude, a phase and the best of the periods once in a
+/// hundred times.
+constexpr double kSignificantGain = 0;
 /// The cost has a wide minimum over periods: so many samples find it as well as all of them.
 constexpr std::size_t kEnoughSamples = 20000;
 
@@ -60,7 +63,7 @@ std::optional<PeriodicTerm> find_period(std::span<const RangeSample> samples, do
     fits[i] = fit_with(samples, sample_weight, rest_information, rest_gradient, kCandidates_m[i]);
   });
   const auto best = std::ranges::max_element(fits, {}, &Fit::gain);
-  if (best->gain <= base) return std::nullopt;
+  if (best->gain <= base + kSignificantGain) return std::nullopt;
   return PeriodicTerm{kCandidates_m[best - fits.begin()], best->solution[kSine], best->solution[kCosine]};
 }
 

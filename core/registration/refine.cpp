@@ -30,6 +30,11 @@ struct Stage {
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
 constexpr int kFullSteps = 5;
+/// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
+/// errors.
+constexpr double kMinEdgeScatter = 0.5;
+/// Chance lets the cost fall by as much through seven joint zeros once in twenty times.
+constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
 /// simulated captures this much larger, squared, than the scatter of residuals alone says.
 constexpr double kModelAllowance = 1.55;
@@ -53,8 +58,9 @@ class Refiner {
                             {4, 3, 0.03, 10, false, true, false},
                             {3, 2, 0, 5, false, true, false}};
     const bool zeros = settings_.joint_zero_prior > 0;
-    const Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
-    const Stage last{3, 1, 0, 3, true, true, zeros};
+    Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
+    Stage last{5, 1, 0, 3, true, true, zeros};
+    const Stage judged = last;  // what is known is known with the zeros free, whether they are used or not
     double progress = 0;
     for (const Stage& stage : stages) {
       run_stage(stage);
@@ -64,8 +70,13 @@ class Refiner {
     step(closing, 0);
     choose_period(closing);
     run_stage(closing);
+    if (zeros && !are_zeros_significant()) {
+      closing.free_zeros = last.free_zeros = false;
+      set_zeros(JointZeros::Zero());
+      run_stage(closing);
+    }
     run_stage(last);
-    finish(last);
+    finish(judged);
     return result_;
   }
 
@@ -135,7 +146,7 @@ class Refiner {
   NormalEquations contour_part(const ViewSums& sums) const {
     NormalEquations all;
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
-      const double scale = robust_sigma(sums.contour[k].tally.whitened);
+      const double scale = std::max(robust_sigma(sums.contour[k].tally.whitened), kMinEdgeScatter);
       all.merge(sums.contour[k].equations.scaled(1 / (scale * scale * edge_noise_[k].correlation)));
     }
     return all;
@@ -208,17 +219,32 @@ class Refiner {
     }
     result_.image_shift_px += delta[kImageShift];
     result_.depth_shift_px += delta[kDepthShift];
-    if (stage.free_zeros) {
-      result_.joint_zeros += delta.tail<kMaxJointZeros>();
-      for (RegistrationView& view : views_) view.apply_zeros(result_.joint_zeros);
-    }
+    if (stage.free_zeros) set_zeros(result_.joint_zeros + delta.tail<kMaxJointZeros>());
+    last_information_ = information;
     small_step_ = std::sqrt(delta.dot(information * delta)) < settings_.convergence_sigmas;
+  }
+
+  void set_zeros(const JointZeros& zeros) {
+    result_.joint_zeros = zeros;
+    for (RegistrationView& view : views_) view.apply_zeros(zeros);
+  }
+
+  /// Whether the joint zeros explain more than chance would: how far the cost falls by them, everything else
+  /// solved for beside them. Zeros of a robot that has none would only carry noise into the pose.
+  bool are_zeros_significant() const {
+    const auto others = kJointZeros;
+    const Eigen::MatrixXd coupling = last_information_.bottomLeftCorner(kMaxJointZeros, others);
+    const Eigen::MatrixXd known = last_information_.topLeftCorner(others, others);
+    const Eigen::MatrixXd alone = last_information_.bottomRightCorner(kMaxJointZeros, kMaxJointZeros) -
+                                  coupling * known.ldlt().solve(coupling.transpose());
+    const double fall = result_.joint_zeros.dot(alone * result_.joint_zeros);
+    return fall > kSignificantFall;
   }
 
   /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
   /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
   void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
-    constexpr std::size_t kRemembered = 3;
+    constexpr std::size_t kRemembered = 2;
     last_steps_.push_back(pose_step);
     if (last_steps_.size() > kRemembered) last_steps_.erase(last_steps_.begin());
     Vector6d mean = Vector6d::Zero();
@@ -260,6 +286,7 @@ class Refiner {
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
   std::vector<Vector6d> last_steps_;
+  ParameterMatrix last_information_ = ParameterMatrix::Zero();
   double period_start_m_ = 0;
   std::array<EdgeNoise, 2> edge_noise_;  // by EdgeSource
   bool small_step_ = false;

@@ -31,9 +31,8 @@ struct Refinement {
   DepthCorrection correction;
   /// Joint zeros found (true minus reported position) and their standard deviations, rad or m. The pose is
   /// the one that is right for the joints as reported; the zeros are not hidden in it.
-  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zeros = Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
-  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zero_sigmas =
-      Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
+  JointZeros joint_zeros = JointZeros::Zero();
+  JointZeros joint_zero_sigmas = JointZeros::Zero();
   /// Edges lie this far (px) outside the predicted contours, in the image and in the depth.
   double image_shift_px = 0, depth_shift_px = 0;
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included

@@ -27,7 +27,7 @@ struct RegistrationView {
   std::shared_ptr<const PixelRays> rays;  ///< of the camera the view was taken with
 
   /// Puts the robot where the reported joints and these zeros put it.
-  void apply_zeros(const Eigen::Matrix<double, kMaxJointZeros, 1>& zeros);
+  void apply_zeros(const JointZeros& zeros);
 };
 
 struct PrepareSettings {

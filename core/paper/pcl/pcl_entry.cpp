@@ -51,7 +51,9 @@ void align(const CalibrdPclTask& task, CalibrdPclFit& fit) {
 
 bool calibrd_pcl_align_1(const CalibrdPclTask* task, CalibrdPclFit* fit) noexcept {
   try {
-    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what failed is returned, not printed
+    // What failed is returned, not printed. Once: PCL keeps this in a global variable.
+    [[maybe_unused]] static const bool silenced =
+        (pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS), true);
     align(*task, *fit);
     return std::isfinite(fit->rms_m) && fit->rms_m <= task->max_correspondence_m;
   } catch (...) {  // nothing may be thrown out of a shared object with another C++ library's view of types
