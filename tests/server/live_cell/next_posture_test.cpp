@@ -5,7 +5,11 @@
 namespace calibrd {
 namespace {
 
-using NextPosture = CellFixture;
+/// A sensor that sees enough of the arm.
+class NextPosture : public CellFixture {
+ protected:
+  NextPosture() { camera_ = {128, 96, 250, 250, 63.5, 47.5, {0, 0, 0, 0, 0}}; }
+};
 
 CalibrationResult known_to_a_millimetre(CalibrationResult result) {
   result.covariance = 1e-6 * Matrix6d::Identity();
@@ -14,8 +18,8 @@ CalibrationResult known_to_a_millimetre(CalibrationResult result) {
 
 TEST_F(NextPosture, IsThereOnceAPoseIsKnownAndAfterARestart) {
   on_calibrate_ = [](auto views, const auto&) { return known_to_a_millimetre(accepted(views)); };
-  EXPECT_EQ(cell_->next_posture({"none", -1}).error().code(), api::ApiError::no_such_sensor);
-  EXPECT_EQ(cell_->next_posture({"eye", -1}).error().code(), api::ApiError::no_pose);
+  EXPECT_EQ(cell_->next_posture({"none", -1}).error().code, api::ApiError::no_such_sensor);
+  EXPECT_EQ(cell_->next_posture({"eye", -1}).error().code, api::ApiError::no_pose);
   calibrate();
   const auto suggestion = cell_->next_posture({"eye", -1});
   ASSERT_TRUE(suggestion) << suggestion.error().message();
@@ -28,7 +32,7 @@ TEST_F(NextPosture, IsThereOnceAPoseIsKnownAndAfterARestart) {
 TEST_F(NextPosture, StaysAboveTheTable) {
   on_calibrate_ = [](auto views, const auto&) { return known_to_a_millimetre(accepted(views)); };
   calibrate();
-  EXPECT_EQ(cell_->next_posture({"eye", 0}).error().code(), api::ApiError::no_posture);  // the arm lies at 0
+  EXPECT_EQ(cell_->next_posture({"eye", 0}).error().code, api::ApiError::no_posture);  // the arm lies at 0
 }
 
 TEST_F(NextPosture, HelpsAnUncertainCalibrationFurther) {
