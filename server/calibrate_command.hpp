@@ -15,6 +15,7 @@ struct CalibrateOptions {
   std::filesystem::path capture_dir;
   std::vector<std::filesystem::path> models;
   std::string guess;  ///< a JSON file or x,y,z,qx,qy,qz,qw; empty: none
+  std::vector<std::string> workspace;  ///< "x,y,z" or "NAME=x,y,z", m, base frame
   std::string method = "full";
   bool depth_only = false;
   bool json = false;  ///< accepted for clarity's sake: the output is always JSON

@@ -34,7 +34,7 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   auto entry = std::make_unique<Entry>();
   entry->setup = setup;
   entry->sensor =
-      std::make_unique<LiveSensor>(LiveSensorSettings{setup.id, setup.camera, gate, settings_.watch}, robot_,
+      std::make_unique<LiveSensor>(LiveSensorSettings{setup.id, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
                                    estimator_.make_check(setup.camera), log_.on_pose);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);

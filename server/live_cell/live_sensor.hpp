@@ -28,6 +28,7 @@ struct LiveSensorSettings {
   CameraModel camera;
   ViewGateSettings gate;
   PoseWatchSettings watch;
+  std::vector<WorkspacePoint> workspace;
 };
 
 /// One frame and what is known of the robot at its time.
@@ -54,6 +55,8 @@ class LiveSensor {
 
   const std::string& id() const { return settings_.id; }
   const CameraModel& camera() const { return settings_.camera; }
+  /// Where its calibrations tell their predicted error.
+  const std::vector<WorkspacePoint>& workspace() const { return settings_.workspace; }
 
   /// The pose being served. `seen_at`: when the views were taken that it comes from; nothing for a stored
   /// pose, which is unverified until a check agrees.
