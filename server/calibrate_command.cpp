@@ -41,6 +41,24 @@ Result<PaperSettings> paper_settings(const CalibrateOptions& options) {
   return paper;
 }
 
+/// "x,y,z" or "NAME=x,y,z"; without a name it is called by its place in the row.
+std::optional<WorkspacePoint> parse_point(const std::string& text, std::size_t place) {
+  const auto equals = text.find('=');
+  WorkspacePoint point;
+  point.name = equals == std::string::npos ? "point_" + std::to_string(place + 1) : text.substr(0, equals);
+  const std::string numbers = equals == std::string::npos ? text : text.substr(equals + 1);
+  char beyond = 0;
+  Eigen::Vector3d& p = point.p_base;
+  if (std::sscanf(numbers.c_str(), "%lf,%lf,%lf%c", &p.x(), &p.y(), &p.z(), &beyond) != 3 || !p.allFinite() ||
+      point.name.empty())
+    return std::nullopt;
+  return point;
+}
+
+std::string check_point(const std::string& text) {
+  return parse_point(text, 0) ? "" : "\"" + text + "\" is not x,y,z or NAME=x,y,z (m, base frame)";
+}
+
 Result<Loaded> load(const CalibrateOptions& options) {
   CalibrationSettings settings;
   settings.method = options.method == "paper" ? Method::paper : Method::full;
@@ -53,6 +71,8 @@ Result<Loaded> load(const CalibrateOptions& options) {
     if (!guess) return guess.error();
     settings.guess_T_base_sensor = *guess;
   }
+  for (const std::string& text : options.workspace)
+    if (const auto point = parse_point(text, settings.workspace.size())) settings.workspace.push_back(*point);
   auto capture = read_capture(options.capture_dir, options.models);
   if (!capture) return capture.error();
   RobotModelOptions model_options{{options.capture_dir}, capture->base_link};
@@ -87,6 +107,12 @@ void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--guess", options.guess,
                      "Rough pose: a JSON file with T_base_sensor, or x,y,z,qx,qy,qz,qw");
+  command
+      .add_option(
+          "--workspace", options.workspace,
+          "Point to tell the predicted error of: x,y,z or NAME=x,y,z (m, base frame); may be repeated")
+      ->allow_extra_args(false)
+      ->check(check_point);
   command.add_option("--method", options.method, "full, or paper for the published method")
       ->check(CLI::IsMember({"full", "paper"}));
   command.add_option("--roi", options.roi,

@@ -53,6 +53,73 @@ json::array reasons_json(const std::vector<Reason>& reasons) {
   return all;
 }
 
+json::array links_json(const std::vector<LinkCoverage>& links) {
+  json::array all;
+  for (const auto& link : links)
+    if (link.predicted > 0)
+      all.push_back({{"link", link.link}, {"predicted", link.predicted}, {"coverage", link.coverage}});
+  return all;
+}
+
+json::array weak_directions_json(const std::vector<WeakDirection>& directions) {
+  json::array all;
+  for (const auto& weak : directions) {
+    const auto& d = weak.direction_base;
+    all.push_back({{"what", weak.what},
+                   {"kind", weak.is_rotation ? "rotation" : "position"},
+                   {"direction", json::array{d.x(), d.y(), d.z()}},
+                   {weak.is_rotation ? "sigma_rad" : "sigma_m", weak.sigma}});
+  }
+  return all;
+}
+
+json::array workspace_json(const std::vector<WorkspaceError>& errors) {
+  json::array all;
+  for (const auto& [point, sigma_m] : errors)
+    all.push_back({{"name", point.name},
+                   {"x", point.p_base.x()},
+                   {"y", point.p_base.y()},
+                   {"z", point.p_base.z()},
+                   {"sigma_m", sigma_m}});
+  return all;
+}
+
+/// Calls `take` with each object of an array; what is no array is left aside.
+template <class Take>
+void for_each_object(const json::object& object, std::string_view key, const Take& take) {
+  const auto* value = object.if_contains(key);
+  if (!value || !value->is_array()) return;
+  for (const auto& entry : value->get_array())
+    if (const auto* inner = entry.if_object()) take(*inner);
+}
+
+void read_evidence(const json::object& object, CalibrationResult& result) {
+  for_each_object(object, "links", [&](const json::object& link) {
+    result.links.push_back({text_or(link, "link", ""),
+                            static_cast<std::size_t>(number_or(link, "predicted", 0)),
+                            number_or(link, "coverage", 0)});
+  });
+  for_each_object(object, "weak_directions", [&](const json::object& weak) {
+    const bool is_rotation = text_or(weak, "kind", "") == "rotation";
+    const auto* direction = weak.if_contains("direction");
+    const auto d = direction ? flat_numbers(*direction) : std::nullopt;
+    if (d && d->size() == 3)
+      result.weak_directions.push_back({text_or(weak, "what", ""),
+                                        is_rotation,
+                                        {(*d)[0], (*d)[1], (*d)[2]},
+                                        number_or(weak, is_rotation ? "sigma_rad" : "sigma_m", 0)});
+  });
+  for_each_object(object, "workspace", [&](const json::object& point) {
+    result.workspace.push_back(
+        {{text_or(point, "name", ""),
+          {number_or(point, "x", 0), number_or(point, "y", 0), number_or(point, "z", 0)}},
+         number_or(point, "sigma_m", 0)});
+  });
+  if (object.contains("held_out_residual_m"))
+    result.held_out_residual_m = number_or(object, "held_out_residual_m", 0);
+  if (object.contains("runner_up_margin")) result.runner_up_margin = number_or(object, "runner_up_margin", 0);
+}
+
 DepthCorrection depth_correction_of(const json::object& object) {
   DepthCorrection correction;
   correction.scale = number_or(object, "scale", 1);
@@ -116,6 +183,11 @@ json::object calibration_result_object(const CalibrationResult& result) {
   object["joint_zeros"] = joint_zeros_json(result.joint_zeros);
   object["residual_rms_m"] = result.residual_rms_m;
   object["coverage"] = result.coverage;
+  object["links"] = links_json(result.links);
+  if (result.held_out_residual_m) object["held_out_residual_m"] = *result.held_out_residual_m;
+  if (result.runner_up_margin) object["runner_up_margin"] = *result.runner_up_margin;
+  object["weak_directions"] = weak_directions_json(result.weak_directions);
+  object["workspace"] = workspace_json(result.workspace);
   object["views"] = result.views;
   object["used_guess"] = result.used_guess;
   object["reasons"] = reasons_json(result.reasons);
@@ -151,6 +223,7 @@ Result<CalibrationResult> parse_calibration_result(const std::string& text) {
     result.time_total_ms = number_or(times->get_object(), "total", 0);
   read_joint_zeros(*object, result);
   read_reasons(*object, result);
+  read_evidence(*object, result);
   return read_pose_part(*object, std::move(result));
 }
 

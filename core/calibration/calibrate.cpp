@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
+#include "core/calibration/choose_start.hpp"
+#include "core/calibration/diagnose.hpp"
+#include "core/calibration/evidence.hpp"
+#include "core/calibration/observability.hpp"
 #include "core/calibration/verdict.hpp"
-#include "core/global/find_start.hpp"
 #include "core/paper/calibrate_by_paper.hpp"
 #include "core/registration/coarse_align.hpp"
 #include "core/registration/refine.hpp"
@@ -56,10 +60,63 @@ std::vector<JointZero> named_zeros(const RobotModel& robot, const Refinement& re
   return zeros;
 }
 
-std::optional<Pose> found_start(std::span<const RegistrationView> views, const CameraModel& camera) {
-  const auto starts = find_starts(views, camera, {});
-  if (starts.empty()) return std::nullopt;
-  return starts.front().T_base_sensor;
+std::string shown(const Pose& T_base_sensor) {
+  char text[96];
+  const Eigen::Vector3d p = T_base_sensor.translation(), sight = T_base_sensor.linear().col(2);
+  std::snprintf(text, sizeof text, "x %.2f, y %.2f, z %.2f m, looking along (%.1f, %.1f, %.1f)", p.x(), p.y(),
+                p.z(), sight.x(), sight.y(), sight.z());
+  return text;
+}
+
+/// A second place that explains the views as well makes the first one a matter of luck.
+void judge_margin(const std::optional<ChosenStart>& chosen, const VerdictSettings& settings,
+                  CalibrationResult& result) {
+  if (!chosen) return;
+  result.runner_up_margin = chosen->margin;
+  if (chosen->margin && *chosen->margin < settings.min_margin)
+    doubt("ambiguous",
+          "a sensor at " + shown(chosen->T_base_runner_up) +
+              " would explain the views almost as well; add postures that differ more, or give a guess",
+          result);
+}
+
+bool has(const CalibrationResult& result, std::string_view code) {
+  return std::ranges::any_of(result.reasons, [code](const Reason& reason) { return reason.code == code; });
+}
+
+/// Adds what would make the rejected views fit, where something does.
+void explain(std::vector<RegistrationView>& views, const CameraModel& camera, const TriedPoses& tried,
+             CalibrationResult& result) {
+  // An image that is not registered explains itself, and so does a range that is off.
+  constexpr std::string_view kPoseIsWrong[] = {
+      "free_space_violation",   "robot_not_found",    "views_disagree",
+      "link_elsewhere",         "held_out_disagrees", "large_residual",
+      "joint_zero_implausible", "low_coverage",       "surface_differs"};
+  if (std::ranges::none_of(kPoseIsWrong, [&](std::string_view code) { return has(result, code); })) return;
+  for (RegistrationView& view : views) view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
+  if (auto reason = diagnose(views, camera, tried, {})) result.reasons.push_back(*std::move(reason));
+}
+
+/// The verdict with everything that speaks for and against it.
+CalibrationResult judged(std::vector<RegistrationView>& views, const CameraModel& camera,
+                         const Refinement& refined, const std::optional<ChosenStart>& chosen,
+                         const CalibrationSettings& settings) {
+  const RobotModel& robot = views.front().cell.robot();
+  CalibrationResult result;
+  const Evidence evidence = gather_evidence(views, camera, refined);
+  describe_evidence(robot, evidence, result);
+  judge(refined, evidence, {}, result);
+  judge_margin(chosen, {}, result);
+  if (result.verdict == Verdict::rejected)
+    explain(
+        views, camera,
+        {{refined.T_base_sensor}, settings.guess_T_base_sensor.has_value(), has(result, "surface_differs")},
+        result);
+  if (result.T_base_sensor) {
+    result.joint_zeros = named_zeros(robot, refined);
+    result.workspace = workspace_errors(result.covariance, *result.T_base_sensor, settings.workspace);
+  }
+  return result;
 }
 
 CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera,
@@ -69,8 +126,9 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   PrepareSettings prepare;
   prepare.use_images = !settings.depth_only;
   std::vector<RegistrationView> prepared = prepare_views(cell, camera, views, prepare);
-  const auto rough =
-      settings.guess_T_base_sensor ? settings.guess_T_base_sensor : found_start(prepared, camera);
+  std::optional<ChosenStart> chosen;
+  std::optional<Pose> rough = settings.guess_T_base_sensor;
+  if (!rough && (chosen = choose_start(prepared, camera))) rough = chosen->T_base_sensor;
   if (!rough)
     return rejected({"nothing_moved",
                      "without a guess at least two postures are needed between which the robot moves in "
@@ -86,10 +144,8 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   const Refinement refined = refine(prepared, camera, start, refinement);
   if (is_cancelled()) return rejected({"cancelled", "the calibration was cancelled"}, views.size());
 
-  CalibrationResult result;
+  CalibrationResult result = judged(prepared, camera, refined, chosen, settings);
   result.views = static_cast<int>(views.size());
-  judge(refined, {}, result);
-  if (result.verdict != Verdict::rejected) result.joint_zeros = named_zeros(robot, refined);
   return result;
 }
 

@@ -34,11 +34,37 @@ struct JointZero {
   double sigma = 0;  ///< its standard deviation; close to the prior where the views do not show it
 };
 
+/// What one link showed, all views together.
+struct LinkCoverage {
+  std::string link;
+  std::size_t predicted = 0;  ///< pixels predicted visible (every second one in both directions)
+  double coverage = 0;        ///< share of them that the measurement agrees with, 0..1
+};
+
+/// A place of the cell where the pose is to be good, and how good it is there.
+struct WorkspacePoint {
+  std::string name;
+  Eigen::Vector3d p_base = Eigen::Vector3d::Zero();  ///< m
+};
+struct WorkspaceError {
+  WorkspacePoint point;
+  double sigma_m = 0;  ///< standard deviation of where the pose puts the point as the sensor sees it
+};
+
+/// A direction in which the views do not hold the sensor as tightly as a pose must be held.
+struct WeakDirection {
+  std::string what;                                           ///< in plain words
+  bool is_rotation = false;                                   ///< else a shift
+  Eigen::Vector3d direction_base = Eigen::Vector3d::UnitZ();  ///< unit; of a rotation its axis
+  double sigma = 0;                                           ///< rad or m
+};
+
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
   PaperSettings paper;                      ///< of Method::paper alone
   bool depth_only = false;                  ///< leave the images of the views aside
+  std::vector<WorkspacePoint> workspace;    ///< where the result is to tell its predicted error
   std::function<void(double)> on_progress;  ///< called with 0..1 from the calling thread
   const std::atomic<bool>* cancelled =
       nullptr;  ///< polled; when true, calibrate returns early as rejected/"cancelled"
@@ -58,6 +84,14 @@ struct CalibrationResult {
   double residual_rms_m = 0;
   double coverage =
       0;  ///< share of the robot pixels predicted visible that the measurement agrees with, 0..1
+  std::vector<LinkCoverage> links;  ///< those predicted visible
+  /// Median |residual| (m) of views judged by the pose that the other views give; nothing below 4 views.
+  std::optional<double> held_out_residual_m;
+  /// Of the start search without a guess, -1..1: how much better the best hypothesis explains the views than
+  /// the next one that differs; nothing with a guess, or when there was only one.
+  std::optional<double> runner_up_margin;
+  std::vector<WeakDirection> weak_directions;  ///< worst first; empty when all are held
+  std::vector<WorkspaceError> workspace;       ///< one per point asked for; empty when rejected
   int views = 0;
   bool used_guess = false;
   std::vector<Reason> reasons;

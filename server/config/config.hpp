@@ -74,6 +74,7 @@ struct SensorConfig {
   int depth_unit_um = 1000;
   Duration latency{0};
   std::optional<Pose> guess_T_base_sensor;
+  std::map<std::string, std::array<double, 3>> workspace;  ///< name -> m, base frame
 };
 
 struct PoseConfig {

@@ -211,17 +211,26 @@ Kind<std::vector<std::filesystem::path>> paths() {
           }};
 }
 
-Kind<std::array<double, 5>> five_reals() {
-  return {"list of 5 numbers",
-          [](const RawValue& value) -> Result<std::array<double, 5>> {
+namespace {
+
+template <std::size_t N>
+Kind<std::array<double, N>> some_reals(std::string name) {
+  return {name,
+          [name](const RawValue& value) -> Result<std::array<double, N>> {
             const auto numbers = as_numbers(value);
-            if (!numbers || numbers->size() != 5) return bad(shown(value) + " is not a list of 5 numbers");
-            std::array<double, 5> all{};
+            if (!numbers || numbers->size() != N) return bad(shown(value) + " is not a " + name);
+            std::array<double, N> all{};
             std::copy(numbers->begin(), numbers->end(), all.begin());
             return all;
           },
-          [](const std::array<double, 5>& value) { return number_list(value.data(), value.size()); }};
+          [](const std::array<double, N>& value) { return number_list(value.data(), value.size()); }};
 }
+
+}  // namespace
+
+Kind<std::array<double, 5>> five_reals() { return some_reals<5>("list of 5 numbers"); }
+
+Kind<std::array<double, 3>> three_reals() { return some_reals<3>("list of 3 numbers"); }
 
 Kind<std::vector<std::array<double, 2>>> ranges() {
   return {"list of [lower, upper]",

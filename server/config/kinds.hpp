@@ -39,6 +39,8 @@ Kind<Duration> duration(Duration min, Duration max);
 Kind<std::filesystem::path> path();
 Kind<std::vector<std::filesystem::path>> paths();
 Kind<std::array<double, 5>> five_reals();
+/// [x, y, z]
+Kind<std::array<double, 3>> three_reals();
 /// [[lower, upper], …]
 Kind<std::vector<std::array<double, 2>>> ranges();
 /// [x, y, z, qx, qy, qz, qw], or a 4x4 or 3x4 matrix, row-major, nested or flat.

@@ -44,10 +44,11 @@ std::string section_of(const std::vector<std::string>& path) {
   return section;
 }
 
-/// The path as the documentation shows it: sensors.ID, robot.joints.NAME.coupling.OTHER.
+/// The path as the documentation shows it: sensors.ID, sensors.ID.workspace.POINT,
+/// robot.joints.NAME.coupling.OTHER.
 std::vector<std::string> documented_path(const Setting& setting) {
   const std::string first = setting.path.front() == "sensors" ? "ID" : "NAME";
-  return path_of(setting, {first, "OTHER"});
+  return path_of(setting, {first, first == "ID" ? "POINT" : "OTHER"});
 }
 
 std::string documented_default(const Setting& setting) {

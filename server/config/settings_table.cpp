@@ -185,6 +185,29 @@ void declare_sensors(std::vector<Setting>& table) {
       "Rough T_base_sensor; only makes the first calibration faster.");
 }
 
+void declare_workspace(std::vector<Setting>& table) {
+  Setting setting;
+  setting.path = {"sensors", "*", "workspace", "*"};
+  const auto kind = three_reals();
+  setting.type = "[x, y, z]";
+  setting.unit = "m";
+  setting.meaning =
+      "Point of the base frame where the pose must be good: every calibration tells its predicted error "
+      "there.";
+  setting.set = [kind](Config& config, const Names& names, const RawValue& raw) -> Status {
+    auto value = kind.read(raw);
+    if (!value) return value.error();
+    config.sensors[names[0]].workspace[names[1]] = *value;
+    return Done{};
+  };
+  setting.toml = [kind](const Config& config, const Names& names) {
+    const auto sensor = config.sensors.find(names[0]);
+    if (sensor == config.sensors.end() || !sensor->second.workspace.contains(names[1])) return std::string();
+    return kind.write(sensor->second.workspace.at(names[1]));
+  };
+  table.push_back(std::move(setting));
+}
+
 void declare_pose(std::vector<Setting>& table) {
   SectionDeclarer<PoseConfig> key(table, {"pose"},
                                   [](Config& c, const Names&) -> PoseConfig& { return c.pose; });
@@ -231,6 +254,7 @@ std::vector<Setting> build_table() {
   declare_joints(table);
   declare_coupling(table);
   declare_sensors(table);
+  declare_workspace(table);
   declare_pose(table);
   declare_calibration(table);
   declare_rest(table);

@@ -93,7 +93,9 @@ SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig&
 }
 
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
-  return {id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor};
+  SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}};
+  for (const auto& [name, p] : sensor.workspace) setup.workspace.push_back({name, {p[0], p[1], p[2]}});
+  return setup;
 }
 
 LiveCellSettings cell_settings(const Config& config, const std::string& version) {

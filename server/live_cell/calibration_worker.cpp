@@ -111,6 +111,7 @@ CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<co
   CalibrationSettings settings;
   settings.method = job->report.method;
   settings.guess_T_base_sensor = job->guess;
+  settings.workspace = job->sensor->workspace();
   settings.cancelled = &job->cancelled;
   settings.on_progress = [&](double share) {
     const std::lock_guard lock(mutex_);

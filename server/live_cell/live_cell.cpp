@@ -40,7 +40,7 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   entry->setup = setup;
   const auto basis = robot_basis_ + camera_basis(setup.camera);
   entry->sensor = std::make_unique<LiveSensor>(
-      LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch}, robot_,
+      LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
       estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);

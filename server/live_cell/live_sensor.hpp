@@ -43,6 +43,7 @@ struct LiveSensorSettings {
   CameraModel camera;
   ViewGateSettings gate;
   PoseWatchSettings watch;
+  std::vector<WorkspacePoint> workspace;
 };
 
 /// One frame and what is known of the robot at its time.
@@ -69,6 +70,8 @@ class LiveSensor {
 
   const std::string& id() const { return settings_.id; }
   const CameraModel& camera() const { return settings_.camera; }
+  /// Where its calibrations tell their predicted error.
+  const std::vector<WorkspacePoint>& workspace() const { return settings_.workspace; }
 
   const std::string& basis() const { return settings_.basis; }
 

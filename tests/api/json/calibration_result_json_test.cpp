@@ -25,6 +25,12 @@ CalibrationResult accepted_result() {
   result.joint_zeros = {{"joint_s", 0.001, 0.0002}, {"joint_l", -0.0004, 0.0009}};
   result.residual_rms_m = 0.003;
   result.coverage = 0.9;
+  result.links = {{"link_5_b", 1200, 0.97}, {"hidden", 0, 0}};
+  result.held_out_residual_m = 0.0012;
+  result.runner_up_margin = 0.4;
+  result.weak_directions = {{"along the line of sight", false, {0, 0.6, 0.8}, 0.004},
+                            {"about the vertical axis of the robot", true, {0, 0, 1}, 0.005}};
+  result.workspace = {{{"tray", {0.4, -0.2, 0.1}}, 0.0007}};
   result.views = 5;
   result.used_guess = true;
   result.reasons = {{"weak_direction", "the line of sight is weakly observed"}};
@@ -34,9 +40,10 @@ CalibrationResult accepted_result() {
 
 TEST(CalibrationResultJson, HoldsEveryKeyOfTheContract) {
   const auto object = json::parse(calibration_result_json(accepted_result(), 12.0)).as_object();
-  for (const auto* key : {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
-                          "depth_correction", "joint_zeros", "residual_rms_m", "coverage", "views",
-                          "used_guess", "reasons", "time_ms"})
+  for (const auto* key :
+       {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
+        "depth_correction", "joint_zeros", "residual_rms_m", "coverage", "links", "held_out_residual_m",
+        "runner_up_margin", "weak_directions", "workspace", "views", "used_guess", "reasons", "time_ms"})
     EXPECT_TRUE(object.contains(key)) << key;
   EXPECT_EQ(object.at("verdict"), "accepted");
   EXPECT_EQ(object.at("T_base_sensor").as_array().size(), 4U);
@@ -67,6 +74,20 @@ TEST(CalibrationResultJson, ReadsBackTheSame) {
   EXPECT_DOUBLE_EQ(read->joint_zeros[1].sigma, 0.0009);
   EXPECT_DOUBLE_EQ(read->coverage, result.coverage);
   EXPECT_EQ(read->views, result.views);
+  ASSERT_EQ(read->links.size(), 1U);  // those predicted visible
+  EXPECT_EQ(read->links[0].predicted, 1200U);
+  EXPECT_DOUBLE_EQ(read->links[0].coverage, 0.97);
+  EXPECT_EQ(read->held_out_residual_m, result.held_out_residual_m);
+  EXPECT_EQ(read->runner_up_margin, result.runner_up_margin);
+  ASSERT_EQ(read->weak_directions.size(), 2U);
+  EXPECT_FALSE(read->weak_directions[0].is_rotation);
+  EXPECT_TRUE(read->weak_directions[1].is_rotation);
+  EXPECT_DOUBLE_EQ(read->weak_directions[0].direction_base.y(), 0.6);
+  EXPECT_DOUBLE_EQ(read->weak_directions[1].sigma, 0.005);
+  ASSERT_EQ(read->workspace.size(), 1U);
+  EXPECT_EQ(read->workspace[0].point.name, "tray");
+  EXPECT_DOUBLE_EQ(read->workspace[0].point.p_base.y(), -0.2);
+  EXPECT_DOUBLE_EQ(read->workspace[0].sigma_m, 0.0007);
   EXPECT_TRUE(read->used_guess);
   ASSERT_EQ(read->reasons.size(), 1U);
   EXPECT_EQ(read->reasons[0].text, result.reasons[0].text);

@@ -23,9 +23,9 @@ Refinement sound() {
   return r;
 }
 
-CalibrationResult judged(const Refinement& refinement) {
+CalibrationResult judged(const Refinement& refinement, const Evidence& evidence = {}) {
   CalibrationResult result;
-  judge(refinement, {}, result);
+  judge(refinement, evidence, {}, result);
   return result;
 }
 

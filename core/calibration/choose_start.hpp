@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+
+#include "core/registration/registration_view.hpp"
+
+namespace calibrd {
+
+/// Where the calibration starts without a guess, and by how much nothing else explains the views as well.
+struct ChosenStart {
+  Pose T_base_sensor = Pose::Identity();
+  std::optional<double> margin;  ///< score over the best hypothesis elsewhere; nothing when there is none
+  Pose T_base_runner_up = Pose::Identity();  ///< that one; set with `margin`
+};
+
+/// The best of find_starts(). Where the runner-up comes close, both are pulled onto the surface and judged
+/// again, finer: they may turn out to be the same, or change places. Nothing when nothing moved.
+std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera);
+
+}  // namespace calibrd

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/calibration/diagnose.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/calibration/alternatives.hpp"
+#include "core/calibration/free_joints.hpp"
+#include "core/global/find_start.hpp"
+#include "core/global/moving_points.hpp"
+#include "core/registration/coarse_align.hpp"
+
+namespace calibrd {
+namespace {
+
+using Views = std::vector<RegistrationView>;
+using Masks = std::vector<std::vector<std::uint8_t>>;
+
+constexpr double kTolerance_m = 0.02;
+constexpr double kLeastAgreeing = 0.9;      // share of a free fit's pixels
+constexpr double kLeastSpread_rad = 0.005;  // of a joint over the views: less is a joint's zero, or nothing
+
+std::string degrees(double angle_rad) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.1f degrees", 57.29577951308232 * angle_rad);
+  return text;
+}
+
+/// The views under one explanation, and the camera to see them by.
+struct Input {
+  Views views;
+  CameraModel camera;
+};
+
+void mirror(std::vector<float>& depth, const CameraModel& camera) {
+  for (int y = 0; y < camera.height; ++y) {
+    const auto row = depth.begin() + static_cast<std::ptrdiff_t>(y) * camera.width;
+    std::reverse(row, row + camera.width);
+  }
+}
+
+Input under(const Alternative& alternative, std::span<const RegistrationView> views,
+            const CameraModel& camera, std::size_t count) {
+  std::vector<std::vector<double>> joints;
+  for (const RegistrationView& view : views) joints.push_back(view.reported_joints);
+  Input input{{}, alternative.camera(camera)};
+  for (std::size_t v = 0; v < views.size() && input.views.size() < count; ++v) {
+    auto positions = alternative.joints(joints, v);
+    if (positions.empty()) continue;
+    RegistrationView view = views[v];
+    view.image.clear();
+    view.reported_joints = std::move(positions);
+    view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
+    if (alternative.mirrored) mirror(view.depth_m, camera);
+    input.views.push_back(std::move(view));
+  }
+  return input;
+}
+
+std::vector<double> scores_of(const Input& input, const Masks& masks, std::span<const Pose> poses) {
+  std::vector<double> values;
+  for (const RenderScore& score : render_scores(input.views, masks, input.camera, poses, {6, kTolerance_m}))
+    values.push_back(score.value());
+  return values;
+}
+
+Masks masks_of(const Input& input) {
+  Masks masks;
+  for (MovingPoints& moving : find_moving_points(input.views, input.camera, {}))
+    masks.push_back(std::move(moving.mask));
+  return masks;
+}
+
+/// How well the best of the poses explains the views once it is pulled onto them.
+double best_score(const Input& input, const Masks& masks, std::vector<Pose> poses) {
+  if (poses.empty() || input.views.size() < 2) return 0;
+  CoarseSettings align;
+  align.iterations = 12;
+  align.reduction = 8;
+  for (Pose& pose : poses) pose = coarse_align(input.views, input.camera, pose, align);
+  return std::ranges::max(scores_of(input, masks, poses));
+}
+
+std::vector<Pose> searched(const Input& input) {
+  StartSettings quick;
+  quick.rotations = 100;
+  quick.surface_points = 1500;
+  quick.voxel_m = 0.05;
+  quick.kept_fits = 12;
+  quick.convincing = -1;
+  std::vector<Pose> poses;
+  for (const StartHypothesis& start : find_starts(input.views, input.camera, quick)) {
+    poses.push_back(start.T_base_sensor);
+    if (poses.size() == 2) break;
+  }
+  return poses;
+}
+
+/// Holds what was found so far and what the next must beat.
+class Search {
+ public:
+  Search(std::span<const RegistrationView> views, const CameraModel& camera, const TriedPoses& tried,
+         const DiagnoseSettings& settings)
+      : views_(views),
+        camera_(camera),
+        tried_(tried),
+        settings_(settings),
+        deadline_(std::chrono::steady_clock::now() + settings.budget),
+        as_it_came_(under({}, views, camera, settings.views)),
+        masks_(masks_of(as_it_came_)),
+        score_as_it_came_(best_score(as_it_came_, masks_, tried.T_base_sensor)) {
+    to_beat_ = std::max({settings.least_score, score_as_it_came_ + settings.least_gain,
+                         score_as_it_came_ + settings.least_mended * (1 - score_as_it_came_)});
+  }
+
+  std::optional<Reason> run() {
+    const auto all = alternatives(views_.front().cell.robot().position_names(), tried_.used_guess);
+    for (const Alternative& alternative : all) try_from(tried_.T_base_sensor, alternative);
+    if (!best_) {
+      for (const Alternative& alternative : all)
+        if (alternative.of_sensor) try_from({}, alternative);
+    }
+    if (!best_) consider_moving_robot();
+    if (!best_) {
+      for (const Alternative& alternative : all)
+        if (!alternative.of_sensor) try_from({}, alternative);
+    }
+    if (!best_ && !is_late() && something_moved() &&
+        (tried_.surface_differs || score_as_it_came_ < settings_.least_score))
+      best_ = {
+          "robot_model_wrong",
+          "what moved fits this robot from no place, nor with other joint orders, signs or moments: is this "
+          "the model of this robot, with what it carries?"};
+    return best_;
+  }
+
+ private:
+  /// From anywhere, when there are no poses.
+  void try_from(const std::vector<Pose>& poses, const Alternative& alternative) {
+    if (score_ >= settings_.convincing || is_late()) return;
+    const Input input = under(alternative, views_, camera_, settings_.views);
+    const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
+    consider(
+        best_score(input, same_pixels ? masks_ : masks_of(input), poses.empty() ? searched(input) : poses),
+        alternative.reason);
+  }
+  bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
+  void consider(double score, const Reason& reason) {
+    if (score <= to_beat_) return;
+    to_beat_ = score_ = score;
+    best_ = reason;
+  }
+  void consider_moving_robot() {
+    Input input = as_it_came_;
+    const FreeJointsFit fit = fit_free_joints(input.views, camera_, tried_.T_base_sensor.back());
+    const double open = 1 - fit.agreeing_before;
+    if (fit.spread_rad < kLeastSpread_rad || fit.agreeing_after < kLeastAgreeing ||
+        1 - fit.agreeing_after > (1 - settings_.least_mended) * open)
+      return;
+    best_ = {
+        "joints_not_of_frame",
+        "the views fit when the joints of each may differ by up to " + degrees(fit.largest_rad) +
+            " from those given: the robot moved, or frames and joints are of different moments; let it stand "
+            "still, check the stamps and the latency"};
+  }
+  bool something_moved() const {
+    return std::ranges::any_of(
+        masks_, [](const auto& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
+  }
+
+  std::span<const RegistrationView> views_;
+  const CameraModel& camera_;
+  const TriedPoses& tried_;
+  const DiagnoseSettings& settings_;
+  std::chrono::steady_clock::time_point deadline_;
+  Input as_it_came_;
+  Masks masks_;  // of what moved, as it came
+  double score_as_it_came_;
+  double to_beat_ = 1, score_ = -1;
+  std::optional<Reason> best_;
+};
+
+}  // namespace
+
+std::optional<Reason> diagnose(std::span<const RegistrationView> views, const CameraModel& camera,
+                               const TriedPoses& tried, const DiagnoseSettings& settings) {
+  return Search(views, camera, tried, settings).run();
+}
+
+}  // namespace calibrd
