@@ -71,6 +71,7 @@ start_simulator() {
 start_daemon() {
   local port
   port=$(free_port)
+  [ "$port" = 8080 ] || echo "Port 8080 is taken: the daemon listens on $port. Put $port wherever the README says 8080."
   CALIBRD_SIM_WORLD=$work/world "$kBin/calibrd" serve --config config/demo.toml --set server.port="$port" \
     --set robot.port="$controller" --set storage.path="$work/calibrd.db" >/dev/null 2>"$work/daemon.log" &
   pids+=($!)
@@ -119,7 +120,9 @@ compare() {
 
 keep_running() {
   echo
-  echo "daemon      $api/api/v1/cell   pose: $api/api/v1/sensors/$kSensor/pose"
+  echo "daemon      curl $api/api/v1/sensors/$kSensor/pose"
+  echo "            curl -X POST $api/api/v1/sensors/$kSensor/calibrations"
+  echo "            curl '$api/readyz?verbose'"
   echo "simulator   $control/truth   knock the sensor:"
   echo "            curl -X POST $control/sensors/$kSensor/knock -d '{\"shift_m\": [0.02, 0, 0]}'"
   echo "Ctrl-C ends both."

@@ -7,6 +7,8 @@
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n 's/^# usage: /usage: /p' "$0" >&2; exit 2; }
 readonly kPid=$1 kSeconds=${2:-20}
+[ -r "/proc/$kPid/stat" ] || { echo "measure_live: there is no process $kPid; pgrep -x calibrd names the daemon's" >&2; exit 2; }
+[[ $kSeconds =~ ^[1-9][0-9]*$ ]] || { echo "measure_live: '$kSeconds' is no number of seconds" >&2; exit 2; }
 
 family() { echo "$kPid" "$(cat /proc/"$kPid"/task/*/children 2>/dev/null)"; }
 

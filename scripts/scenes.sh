@@ -8,6 +8,7 @@
 #   scripts/scenes.sh --bound     60 scenes of noise alone, depth alone: errors over the Cramer-Rao bound
 #   --tuning        seeds from 1 instead of from 100001: 1..999 are for tuning, the others for reports, never both
 #   --scenes N      another number of scenes
+#   --postures K,K  other numbers of postures
 #   --keep FILE     where to leave the JSON lines
 # What follows `--` goes to calibrd-bench scenes:  scripts/scenes.sh --short -- --guess-mm 40 --guess-deg 4
 # With CALIBRD_SHARED_DATA set, the SIA5D in its models/ takes part beside the robots of the project.
@@ -26,16 +27,17 @@ die() {
 while [ $# -gt 0 ]; do
   case $1 in
     --short) short=12 ;;
-    --bound) mode=(--bound) scenes=60 postures=10,3,1 ;;
+    --bound) mode=(--bound) scenes=60 postures=10,6,4 ;;
     --tuning) first=1 ;;
     --scenes) short=${2:?--scenes needs a number} && shift ;;
+    --postures) only=${2:?--postures needs numbers} && shift ;;
     --keep) kept=${2:?--keep needs a file} && shift ;;
     --) shift && break ;;
     *) die "unknown option '$1'; see the head of scripts/scenes.sh" ;;
   esac
   shift
 done
-scenes=${short:-$scenes}
+scenes=${short:-$scenes} postures=${only:-$postures}
 
 [ -x "$bench" ] || die "$bench is missing; run scripts/test.sh first"
 robots=()

@@ -175,6 +175,9 @@ def main(arguments):
     lines = read_lines([open(name, encoding="utf-8") for name in names] if names else [sys.stdin])
     if not lines:
         sys.exit("scenes_table.py: no lines: did calibrd-bench scenes fail?")
+    twice = [key for key, n in collections.Counter((line["seed"], line.get("K")) for line in lines).items() if n > 1]
+    if twice:
+        sys.exit(f"scenes_table.py: seed {twice[0][0]} with K {twice[0][1]} stands there twice: one run at a time")
     (print_bound if bound else print_table)(lines)
 
 

@@ -15,8 +15,10 @@ readonly kLibraries=(
   libeigen3-dev libembree-dev libtbb-dev libnanoflann-dev                                # geometry
   liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
+  libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev)                                                         # tests
 readonly kBoostPrefix=.deps/boost
+readonly kPclPrefix=.deps/pcl
 
 say() { echo "setup: $*" >&2; }
 
@@ -34,21 +36,24 @@ distribution() {
   )
 }
 
-packages() {
-  printf '%s\n' "${kTools[@]}" "${kLibraries[@]}"
-  # Debian 12's is 1.74, which has no Boost.JSON: see need_private_boost.
-  [ "$1" = debian:12 ] || echo libboost-dev
-}
+packages() { printf '%s\n' "${kTools[@]}" "${kLibraries[@]}"; }
 
 missing_packages() {
   local installed
   installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' 2>/dev/null | sed -n 's/^installed //p')
-  packages "$1" | grep -vxF -f <(echo "$installed") || true
+  packages | grep -vxF -f <(echo "$installed") || true
 }
 
-# Debian 12 has libboost1.81-dev, but it cannot be installed beside packages that need the default one (libpcl-dev,
-# many of ROS): its headers go to a prefix of our own, where cmake/CalibrdBoost.cmake finds them.
+# Debian 12's libboost-dev is 1.74, without Boost.JSON. It has libboost1.81-dev as well, which cannot be installed beside
+# the default one: its headers go to a prefix of our own, where cmake/CalibrdBoost.cmake finds them.
 need_private_boost() { [ "$1" = debian:12 ] && [ ! -f $kBoostPrefix/usr/include/boost/json.hpp ]; }
+
+# libpcl-dev needs all of PCL, VTK and Qt (1.3 GB). Its headers and FLANN's go to a prefix of our own, where
+# cmake/CalibrdPcl.cmake finds them; of the libraries, those that are used are installed. An installed libpcl-dev serves.
+need_private_pcl() {
+  ! compgen -G '/usr/include/pcl-*/pcl/registration/icp.h' >/dev/null &&
+    ! { [ -f $kPclPrefix/usr/include/flann/util/params.h ] && ls /usr/lib/*/libpcl_filters.so.* >/dev/null 2>&1; }
+}
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then
@@ -66,45 +71,57 @@ install_packages() {
   as_root apt-get install -y -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" >&2
 }
 
-download_boost() { (cd "$1" && apt-get download -qq -o APT::Sandbox::User="$(id -un)" libboost1.81-dev); }
-
-unpack_boost() {
-  say "unpacking libboost1.81-dev into $kBoostPrefix"
-  local work
+# Puts the files of packages into a prefix, without installing them: unpack PREFIX PACKAGE...
+unpack() {
+  local prefix=$1 work package
+  shift
+  say "unpacking $* into $prefix"
   mkdir -p .deps
-  work=$(mktemp -d .deps/boost.XXXXXX)
-  download_boost "$work" || { as_root apt-get update -qq && download_boost "$work"; } ||
-    die "could not download libboost1.81-dev. Check the apt sources and the network, then run this again."
-  dpkg -x "$work"/libboost1.81-dev_*.deb "$work/root"
-  rm -rf $kBoostPrefix
-  mv "$work/root" $kBoostPrefix # only now does it exist: an interrupted run leaves nothing half done
+  work=$(mktemp -d "$prefix.XXXXXX")
+  download "$work" "$@" || { as_root apt-get update -qq && download "$work" "$@"; } ||
+    die "could not download $*. Check the apt sources and the network, then run this again."
+  for package in "$work"/*.deb; do dpkg -x "$package" "$work/root"; done
+  if [ "$prefix" = $kPclPrefix ]; then install_pcl_library "$work"/libpcl-dev_*.deb; fi
+  rm -rf "$prefix"
+  mv "$work/root" "$prefix" # only now does it exist: an interrupted run leaves nothing half done
   rm -rf "$work"
+}
+
+download() { (cd "$1" && shift && apt-get download -qq -o APT::Sandbox::User="$(id -un)" "$@"); }
+
+# The library that the headers in this libpcl-dev are for has their version in its name; it brings those it needs.
+install_pcl_library() {
+  local library
+  library=$(dpkg-deb -f "$1" Depends | grep -oE 'libpcl-filters[^ ,]*')
+  install_packages "$library"
 }
 
 refuse() {
   say "this is '$1'; packages are known for Debian 12, Debian 13 and Ubuntu 24.04."
   say "Elsewhere, install the like of these by hand (Boost >= 1.81), then: cmake --preset release"
-  packages "$1" | xargs -n 8 echo "  " >&2
+  packages | xargs -n 8 echo "  " >&2
   exit 1
 }
 
 main() {
   local os missing
   os=$(distribution)
-  [ "${1:-}" != --list ] || { packages "$os"; return; }
+  [ "${1:-}" != --list ] || { packages; return; }
   case "$os" in
     debian:12 | debian:13 | ubuntu:24.04) ;;
     *) refuse "$os" ;;
   esac
-  mapfile -t missing < <(missing_packages "$os")
+  mapfile -t missing < <(missing_packages)
   if [ "${1:-}" = --check ]; then
     if need_private_boost "$os"; then missing+=("$kBoostPrefix"); fi
+    if need_private_pcl; then missing+=("$kPclPrefix"); fi
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
   [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list"
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
-  if need_private_boost "$os"; then unpack_boost; fi
+  if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
+  if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi
 }
 
 main "$@"

@@ -11,6 +11,8 @@
 #include "core/calibration/calibrate.hpp"
 #include "core/calibration/model_views.hpp"
 #include "core/capture/pose_json.hpp"
+#include "core/paper/paper_error.hpp"
+#include "core/paper/region.hpp"
 
 namespace calibrd {
 namespace {
@@ -23,6 +25,19 @@ struct Loaded {
   std::vector<View> views;
   CalibrationSettings settings;
 };
+
+/// What --roi and --sampling say; they belong to the paper's method.
+Result<PaperSettings> paper_settings(const CalibrateOptions& options) {
+  PaperSettings paper;
+  const bool asked_for = !options.roi.empty() || !options.sampling.empty();
+  if (asked_for && options.method != "paper") return fail(PaperError::other_method, "--roi, --sampling");
+  if (options.sampling == "three-sensors") paper.sampling = PaperSampling::three_sensors;
+  if (options.roi.empty()) return paper;
+  const auto region = parse_region(options.roi);
+  if (!region) return region.error();
+  paper.region_sensor = *region;
+  return paper;
+}
 
 /// "x,y,z" or "NAME=x,y,z"; without a name it is called by its place in the row.
 std::optional<WorkspacePoint> parse_point(const std::string& text, std::size_t place) {
@@ -45,6 +60,9 @@ std::string check_point(const std::string& text) {
 Result<Loaded> load(const CalibrateOptions& options) {
   CalibrationSettings settings;
   settings.method = options.method == "paper" ? Method::paper : Method::full;
+  auto paper = paper_settings(options);
+  if (!paper) return paper.error();
+  settings.paper = *paper;
   settings.depth_only = options.depth_only;
   if (!options.guess.empty()) {
     auto guess = read_pose(options.guess);
@@ -76,12 +94,20 @@ void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
   command.add_option("--guess", options.guess,
                      "Rough pose: a JSON file with T_base_sensor, or x,y,z,qx,qy,qz,qw");
   command
-      .add_option("--workspace", options.workspace,
-                  "Point to tell the predicted error of: x,y,z or NAME=x,y,z (m, base frame); may be repeated")
+      .add_option(
+          "--workspace", options.workspace,
+          "Point to tell the predicted error of: x,y,z or NAME=x,y,z (m, base frame); may be repeated")
       ->allow_extra_args(false)
       ->check(check_point);
   command.add_option("--method", options.method, "full, or paper for the published method")
       ->check(CLI::IsMember({"full", "paper"}));
+  command.add_option("--roi", options.roi,
+                     "Region of interest of the method paper, sensor frame, m: x0,y0,z0,x1,y1,z1; default: "
+                     "around the robot at the guess");
+  command
+      .add_option("--sampling", options.sampling,
+                  "Virtual measurement of the method paper: uniform (default), or three-sensors")
+      ->check(CLI::IsMember({"uniform", "three-sensors"}));
   command.add_flag("--depth-only", options.depth_only, "Ignore the images of the recording");
   command.add_flag("--json", options.json, "Print JSON (always the case)");
 }

@@ -14,9 +14,12 @@ namespace calibrd {
 struct CalibrateOptions {
   std::filesystem::path capture_dir;
   std::vector<std::filesystem::path> models;
-  std::string guess;  ///< a JSON file or x,y,z,qx,qy,qz,qw; empty: none
+  std::string guess;                   ///< a JSON file or x,y,z,qx,qy,qz,qw; empty: none
   std::vector<std::string> workspace;  ///< "x,y,z" or "NAME=x,y,z", m, base frame
   std::string method = "full";
+  std::string
+      roi;  ///< x0,y0,z0,x1,y1,z1 in the sensor frame, m; empty: around the robot. Paper's method only
+  std::string sampling;  ///< uniform, three-sensors; empty: uniform. Paper's method only
   bool depth_only = false;
   bool json = false;  ///< accepted for clarity's sake: the output is always JSON
 };

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <system_error>
 
 #include "server/calibrate_command.hpp"
 #include "server/config/print_config.hpp"
@@ -10,7 +13,18 @@
 
 namespace {
 
-constexpr int kUsage = 2;
+constexpr int kUsage = 2;  // or input or output that cannot be used
+
+/// A result that nobody received is no success: a full disk or a closed stdout is found when the last is
+/// flushed.
+int with_output_written(int status) {
+  errno = 0;
+  std::cout.flush();
+  if (std::cout) return status;
+  const auto why = errno == 0 ? std::string("unknown reason") : std::generic_category().message(errno);
+  std::cerr << "calibrd: the output could not be written (" << why << "); check where stdout leads\n";
+  return kUsage;
+}
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"calibrd keeps the pose of every fixed 3D sensor of a robot cell true.", "calibrd"};
@@ -43,7 +57,7 @@ int dispatch(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return dispatch(argc, argv);
+    return with_output_written(dispatch(argc, argv));
   } catch (const std::exception& failure) {
     std::cerr << "calibrd: unexpected failure: " << failure.what() << '\n';
     return 1;

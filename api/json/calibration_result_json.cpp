@@ -10,8 +10,8 @@
 #include "api/json/json_text.hpp"
 #include "api/json/pose_json.hpp"
 #include "api/json/strict_object.hpp"
-#include "api/pose/pose_numbers.hpp"
 #include "api/problem/api_error.hpp"
+#include "core/geometry/pose_numbers.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -95,7 +95,8 @@ void for_each_object(const json::object& object, std::string_view key, const Tak
 
 void read_evidence(const json::object& object, CalibrationResult& result) {
   for_each_object(object, "links", [&](const json::object& link) {
-    result.links.push_back({text_or(link, "link", ""), static_cast<std::size_t>(number_or(link, "predicted", 0)),
+    result.links.push_back({text_or(link, "link", ""),
+                            static_cast<std::size_t>(number_or(link, "predicted", 0)),
                             number_or(link, "coverage", 0)});
   });
   for_each_object(object, "weak_directions", [&](const json::object& weak) {
@@ -103,7 +104,9 @@ void read_evidence(const json::object& object, CalibrationResult& result) {
     const auto* direction = weak.if_contains("direction");
     const auto d = direction ? flat_numbers(*direction) : std::nullopt;
     if (d && d->size() == 3)
-      result.weak_directions.push_back({text_or(weak, "what", ""), is_rotation, {(*d)[0], (*d)[1], (*d)[2]},
+      result.weak_directions.push_back({text_or(weak, "what", ""),
+                                        is_rotation,
+                                        {(*d)[0], (*d)[1], (*d)[2]},
                                         number_or(weak, is_rotation ? "sigma_rad" : "sigma_m", 0)});
   });
   for_each_object(object, "workspace", [&](const json::object& point) {

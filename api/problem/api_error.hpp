@@ -33,6 +33,7 @@ enum class ApiError {
   calibration_not_running,
   calibration_not_finished,
   not_activatable,
+  guess_needed,
   capture_in_progress,
   postures_not_seen,
   storage_failed,

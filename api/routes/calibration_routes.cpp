@@ -5,12 +5,13 @@
 #include <boost/json/object.hpp>
 #include <boost/json/serialize.hpp>
 #include <charconv>
+#include <functional>
 
 #include "api/json/strict_object.hpp"
-#include "api/pose/pose_numbers.hpp"
 #include "api/routes/cell_json.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
+#include "core/geometry/pose_numbers.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -78,7 +79,11 @@ Response answer_start(const Request& request, const PathValues& values, CellServ
   return response;
 }
 
-Response answer_one(const Result<CalibrationReport>& calibration) {
+using CalibrationCall = std::function<Result<CalibrationReport>(const std::string& id)>;
+
+Response answer_one(const Request& request, const PathValues& values, const CalibrationCall& call) {
+  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+  const auto calibration = call(values[0]);
   return calibration ? json_response(200, calibration_json(*calibration, true))
                      : problem(calibration.error());
 }
@@ -125,18 +130,17 @@ void add_calibration_routes(Router& router, CellService& service) {
              [&service](const Request& request, const PathValues& values) {
                return answer_history(request, values, service);
              });
-  router.add("GET", "/api/v1/calibrations/{id}", Cost::slow,
-             [&service](const Request&, const PathValues& values) {
-               return answer_one(service.calibration(values[0]));
-             });
-  router.add("DELETE", "/api/v1/calibrations/{id}", Cost::slow,
-             [&service](const Request&, const PathValues& values) {
-               return answer_one(service.cancel_calibration(values[0]));
-             });
-  router.add("POST", "/api/v1/calibrations/{id}/activate", Cost::slow,
-             [&service](const Request&, const PathValues& values) {
-               return answer_one(service.activate_calibration(values[0]));
-             });
+  const auto add_one = [&router](const char* method, const char* path, CalibrationCall call) {
+    router.add(method, path, Cost::slow,
+               [call = std::move(call)](const Request& request, const PathValues& values) {
+                 return answer_one(request, values, call);
+               });
+  };
+  add_one("GET", "/api/v1/calibrations/{id}", [&](const auto& id) { return service.calibration(id); });
+  add_one("DELETE", "/api/v1/calibrations/{id}",
+          [&](const auto& id) { return service.cancel_calibration(id); });
+  add_one("POST", "/api/v1/calibrations/{id}/activate",
+          [&](const auto& id) { return service.activate_calibration(id); });
 }
 
 }  // namespace calibrd::api

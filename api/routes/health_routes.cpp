@@ -39,7 +39,8 @@ Response answer_ready(const Request& request, CellService& service) {
 }  // namespace
 
 void add_health_routes(Router& router, CellService& service) {
-  router.add("GET", "/livez", Cost::quick, [](const Request&, const PathValues&) {
+  router.add("GET", "/livez", Cost::quick, [](const Request& request, const PathValues&) {
+    if (auto unknown = unknown_query(request, {})) return problem(*unknown);
     return json_response(200, json::object{{"alive", true}});
   });
   router.add("GET", "/readyz", Cost::quick, [&service](const Request& request, const PathValues&) {

@@ -12,9 +12,10 @@ using AllJoints = std::vector<Joints>;
 
 void add_mirror(std::vector<Alternative>& all) {
   Alternative mirrored;
-  mirrored.reason = {"depth_mirrored",
-                     "the views fit when the depth image is mirrored left to right: the sensor delivers mirrored "
-                     "images; set sensors.ID.mirror = true, or turn the driver's mirroring off"};
+  mirrored.reason = {
+      "depth_mirrored",
+      "the views fit when the depth image is mirrored left to right: the sensor delivers mirrored "
+      "images; set sensors.ID.mirror = true, or turn the driver's mirroring off"};
   mirrored.of_sensor = true;
   mirrored.mirrored = true;
   all.push_back(std::move(mirrored));
@@ -42,10 +43,10 @@ void add_intrinsics(std::vector<Alternative>& all) {
 void add_shifts(std::vector<Alternative>& all) {
   for (const int offset : {1, -1}) {
     Alternative shifted;
-    shifted.reason = {"joints_not_of_frame",
-                      std::string("the views fit when each takes the joints of the ") +
-                          (offset > 0 ? "next" : "previous") +
-                          " one: frames and joints are of different moments; check the stamps and the latency"};
+    shifted.reason = {
+        "joints_not_of_frame",
+        std::string("the views fit when each takes the joints of the ") + (offset > 0 ? "next" : "previous") +
+            " one: frames and joints are of different moments; check the stamps and the latency"};
     shifted.joints = [offset](const AllJoints& joints, std::size_t view) {
       const auto other = static_cast<std::ptrdiff_t>(view) + offset;
       if (other < 0 || other >= static_cast<std::ptrdiff_t>(joints.size())) return Joints{};
@@ -60,10 +61,11 @@ Alternative reordered(const std::vector<std::string>& names, const std::vector<s
   std::string list;
   for (const std::size_t place : order) list += (list.empty() ? "" : ", ") + names[place];
   Alternative alternative;
-  alternative.reason = {"joint_order_wrong",
-                        "the views fit when the joints are taken in another order: the model's joints, in their "
-                        "order, want the values given for " +
-                            list + "; correct the joint names or robot.joints.NAME.axis"};
+  alternative.reason = {
+      "joint_order_wrong",
+      "the views fit when the joints are taken in another order: the model's joints, in their "
+      "order, want the values given for " +
+          list + "; correct the joint names or robot.joints.NAME.axis"};
   alternative.joints = [order](const AllJoints& joints, std::size_t view) {
     Joints sorted;
     for (const std::size_t place : order) sorted.push_back(joints[view][place]);
@@ -72,8 +74,8 @@ Alternative reordered(const std::vector<std::string>& names, const std::vector<s
   return alternative;
 }
 
-/// One joint taken out of the row and put in elsewhere: neighbours swapped, tails turned round. An elbow that is
-/// counted last (S L U R B T E) is among them.
+/// One joint taken out of the row and put in elsewhere: neighbours swapped, tails turned round. An elbow that
+/// is counted last (S L U R B T E) is among them.
 void add_orders(const std::vector<std::string>& names, std::vector<Alternative>& all) {
   std::vector<std::vector<std::size_t>> seen;
   std::vector<std::size_t> straight(names.size());
@@ -97,8 +99,8 @@ void add_signs(const std::vector<std::string>& names, std::vector<Alternative>& 
   for (std::size_t i = 0; i < names.size(); ++i) {
     Alternative turned;
     turned.reason = {"joint_sign_wrong", "the views fit when " + names[i] +
-                                             " turns the other way: correct its sign (robot.joints." + names[i] +
-                                             ".sign)"};
+                                             " turns the other way: correct its sign (robot.joints." +
+                                             names[i] + ".sign)"};
     turned.joints = [i](const AllJoints& joints, std::size_t view) {
       Joints positions = joints[view];
       positions[i] = -positions[i];
@@ -114,8 +116,8 @@ std::vector<Alternative> alternatives(const std::vector<std::string>& joint_name
   std::vector<Alternative> all;
   if (used_guess) {
     Alternative elsewhere;
-    elsewhere.reason = {"guess_wrong",
-                        "the views fit from another place than the guess: correct the guess, or leave it out"};
+    elsewhere.reason = {
+        "guess_wrong", "the views fit from another place than the guess: correct the guess, or leave it out"};
     elsewhere.of_sensor = true;
     all.push_back(std::move(elsewhere));
   }

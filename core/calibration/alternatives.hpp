@@ -11,7 +11,7 @@ namespace calibrd {
 
 /// One way in which the input may be wrong, undone.
 struct Alternative {
-  Reason reason;        ///< to give when it fits
+  Reason reason;           ///< to give when it fits
   bool of_sensor = false;  ///< of the sensor or the guess; else of the joints
   std::function<CameraModel(const CameraModel&)> camera = [](const CameraModel& c) { return c; };
   /// The joints of view `view`, given those of all views; empty when there are none.

@@ -12,7 +12,7 @@
 #include "core/calibration/evidence.hpp"
 #include "core/calibration/observability.hpp"
 #include "core/calibration/verdict.hpp"
-#include "core/paper/paper_method.hpp"
+#include "core/paper/calibrate_by_paper.hpp"
 #include "core/registration/coarse_align.hpp"
 #include "core/registration/refine.hpp"
 
@@ -48,26 +48,6 @@ CalibrationResult rejected(Reason reason, std::size_t views) {
   CalibrationResult result;
   result.views = static_cast<int>(views);
   result.reasons.push_back(std::move(reason));
-  return result;
-}
-
-/// The published method knows no uncertainty and no verdict of its own: its pose is never more than
-/// uncertain.
-CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera,
-                                     std::span<const View> views, const Pose& guess) {
-  const auto fit = fit_by_paper(robot, camera, views.front(), guess, {});
-  if (!fit) return rejected({"robot_not_found", "no measured points near the robot; is the guess right?"}, 1);
-  CalibrationResult result;
-  result.verdict = Verdict::uncertain;
-  result.T_base_sensor = fit->T_base_sensor;
-  result.residual_rms_m = fit->rms_m;
-  result.views = 1;
-  result.reasons.push_back(
-      {"paper_method", "the paper's method gives no uncertainty; its pose is for comparison only"});
-  if (!fit->converged)
-    result.reasons.push_back({"not_converged", "ICP ended before its correspondences settled"});
-  if (views.size() > 1)
-    result.reasons.push_back({"first_view_only", "the paper's method uses one posture: the first view"});
   return result;
 }
 
@@ -108,9 +88,10 @@ bool has(const CalibrationResult& result, std::string_view code) {
 void explain(std::vector<RegistrationView>& views, const CameraModel& camera, const TriedPoses& tried,
              CalibrationResult& result) {
   // An image that is not registered explains itself, and so does a range that is off.
-  constexpr std::string_view kPoseIsWrong[] = {"free_space_violation", "robot_not_found", "views_disagree",
-                                               "link_elsewhere", "held_out_disagrees", "large_residual",
-                                               "joint_zero_implausible", "low_coverage", "surface_differs"};
+  constexpr std::string_view kPoseIsWrong[] = {
+      "free_space_violation",   "robot_not_found",    "views_disagree",
+      "link_elsewhere",         "held_out_disagrees", "large_residual",
+      "joint_zero_implausible", "low_coverage",       "surface_differs"};
   if (std::ranges::none_of(kPoseIsWrong, [&](std::string_view code) { return has(result, code); })) return;
   for (RegistrationView& view : views) view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
   if (auto reason = diagnose(views, camera, tried, {})) result.reasons.push_back(*std::move(reason));
@@ -127,9 +108,10 @@ CalibrationResult judged(std::vector<RegistrationView>& views, const CameraModel
   judge(refined, evidence, {}, result);
   judge_margin(chosen, {}, result);
   if (result.verdict == Verdict::rejected)
-    explain(views, camera,
-            {{refined.T_base_sensor}, settings.guess_T_base_sensor.has_value(), has(result, "surface_differs")},
-            result);
+    explain(
+        views, camera,
+        {{refined.T_base_sensor}, settings.guess_T_base_sensor.has_value(), has(result, "surface_differs")},
+        result);
   if (result.T_base_sensor) {
     result.joint_zeros = named_zeros(robot, refined);
     result.workspace = workspace_errors(result.covariance, *result.T_base_sensor, settings.workspace);
@@ -173,10 +155,8 @@ CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, 
                             const CalibrationSettings& settings) {
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
-  if (settings.method == Method::paper && !settings.guess_T_base_sensor)
-    return rejected({"guess_needed", "the paper's method needs a rough pose to start from"}, views.size());
   CalibrationResult result = settings.method == Method::paper
-                                 ? calibrate_by_paper(robot, camera, views, *settings.guess_T_base_sensor)
+                                 ? calibrate_by_paper(robot, camera, views, settings)
                                  : calibrate_in_full(robot, camera, views, settings);
   result.used_guess = settings.guess_T_base_sensor.has_value();
   result.time_total_ms =

@@ -12,6 +12,7 @@
 #include "core/calibration/view.hpp"
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/paper/paper_settings.hpp"
 #include "core/robot/robot_model.hpp"
 #include "core/sensing/depth_correction.hpp"
 
@@ -61,6 +62,7 @@ struct WeakDirection {
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
+  PaperSettings paper;                      ///< of Method::paper alone
   bool depth_only = false;                  ///< leave the images of the views aside
   std::vector<WorkspacePoint> workspace;    ///< where the result is to tell its predicted error
   std::function<void(double)> on_progress;  ///< called with 0..1 from the calling thread

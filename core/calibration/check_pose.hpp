@@ -2,21 +2,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/calibration/calibrate.hpp"
+#include "core/calibration/track.hpp"
 #include "core/virtual_cell/virtual_cell.hpp"
 
 namespace calibrd {
 
 /// How well one view fits what a known pose predicts.
 struct PoseCheck {
-  bool enough_evidence = false;  ///< enough robot pixels in view, with measurements, to say anything
-  bool agrees = false;           ///< the pose explains what is measured on the robot
-  double agreement = 0;          ///< share of measured robot pixels within tolerance of the prediction, 0..1
-  double median_residual_m = 0;  ///< measured minus predicted depth, corrected for the known range bias
-  std::size_t robot_pixels = 0;  ///< predicted robot pixels that carry a measurement
+  bool enough_evidence = false;   ///< enough robot pixels in view, with measurements, to say anything
+  bool agrees = false;            ///< the pose explains what is measured on the robot
+  double agreement = 0;           ///< share of measured robot pixels within tolerance of the prediction, 0..1
+  double median_residual_m = 0;   ///< measured minus predicted depth, corrected for the known range bias
+  std::size_t robot_pixels = 0;   ///< predicted robot pixels that carry a measurement, without hidden ones
+  std::size_t hidden_pixels = 0;  ///< of the robot, by something well in front of it
+  /// How far this view alone would move the robot's visible surface in the sensor's sight (m, rad) ...
+  double shift_m = 0, turn_rad = 0;
+  /// ... against what noise, model and joint zeros explain, in standard deviations of 6 degrees of freedom.
+  double shift_sigmas = 0;
 };
 
-/// Compares one view with what `T_base_sensor` predicts. `cell` is moved to the view's joints.
-PoseCheck check_pose(VirtualCell& cell, const CameraModel& camera, const View& view,
-                     const Pose& T_base_sensor, const DepthCorrection& correction);
+/// Compares views with what a pose predicts. Where the view pins it down, a robot that appears 5 mm or 10
+/// mrad from where the pose puts it disagrees; a direction that this one posture does not show is not
+/// checked. One thread at a time.
+class PoseChecker {
+ public:
+  /// The robot of `cell` must outlive it.
+  PoseChecker(const VirtualCell& cell, const CameraModel& camera);
+
+  PoseCheck check(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction);
+
+ private:
+  /// Where the robot's visible surface lies on average, base frame.
+  Eigen::Vector3d compare(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
+                          PoseCheck& check);
+
+  CameraModel camera_;
+  VirtualCell cell_;
+  PoseTracker tracker_;
+  VirtualMeasurement prediction_;
+};
 
 }  // namespace calibrd

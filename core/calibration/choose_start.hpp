@@ -15,8 +15,8 @@ struct ChosenStart {
   Pose T_base_runner_up = Pose::Identity();  ///< that one; set with `margin`
 };
 
-/// The best of find_starts(). Where the runner-up comes close, both are pulled onto the surface and judged again,
-/// finer: they may turn out to be the same, or change places. Nothing when nothing moved.
+/// The best of find_starts(). Where the runner-up comes close, both are pulled onto the surface and judged
+/// again, finer: they may turn out to be the same, or change places. Nothing when nothing moved.
 std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera);
 
 }  // namespace calibrd

@@ -18,7 +18,7 @@ using Views = std::vector<RegistrationView>;
 using Masks = std::vector<std::vector<std::uint8_t>>;
 
 constexpr double kTolerance_m = 0.02;
-constexpr double kLeastAgreeing = 0.9;  // share of a free fit's pixels
+constexpr double kLeastAgreeing = 0.9;      // share of a free fit's pixels
 constexpr double kLeastSpread_rad = 0.005;  // of a joint over the views: less is a joint's zero, or nothing
 
 std::string degrees(double angle_rad) {
@@ -40,8 +40,8 @@ void mirror(std::vector<float>& depth, const CameraModel& camera) {
   }
 }
 
-Input under(const Alternative& alternative, std::span<const RegistrationView> views, const CameraModel& camera,
-            std::size_t count) {
+Input under(const Alternative& alternative, std::span<const RegistrationView> views,
+            const CameraModel& camera, std::size_t count) {
   std::vector<std::vector<double>> joints;
   for (const RegistrationView& view : views) joints.push_back(view.reported_joints);
   Input input{{}, alternative.camera(camera)};
@@ -128,9 +128,10 @@ class Search {
     }
     if (!best_ && !is_late() && something_moved() &&
         (tried_.surface_differs || score_as_it_came_ < settings_.least_score))
-      best_ = {"robot_model_wrong",
-               "what moved fits this robot from no place, nor with other joint orders, signs or moments: is this "
-               "the model of this robot, with what it carries?"};
+      best_ = {
+          "robot_model_wrong",
+          "what moved fits this robot from no place, nor with other joint orders, signs or moments: is this "
+          "the model of this robot, with what it carries?"};
     return best_;
   }
 
@@ -140,8 +141,9 @@ class Search {
     if (score_ >= settings_.convincing || is_late()) return;
     const Input input = under(alternative, views_, camera_, settings_.views);
     const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
-    consider(best_score(input, same_pixels ? masks_ : masks_of(input), poses.empty() ? searched(input) : poses),
-             alternative.reason);
+    consider(
+        best_score(input, same_pixels ? masks_ : masks_of(input), poses.empty() ? searched(input) : poses),
+        alternative.reason);
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
   void consider(double score, const Reason& reason) {
@@ -156,10 +158,11 @@ class Search {
     if (fit.spread_rad < kLeastSpread_rad || fit.agreeing_after < kLeastAgreeing ||
         1 - fit.agreeing_after > (1 - settings_.least_mended) * open)
       return;
-    best_ = {"joints_not_of_frame",
-             "the views fit when the joints of each may differ by up to " + degrees(fit.largest_rad) +
-                 " from those given: the robot moved, or frames and joints are of different moments; let it stand "
-                 "still, check the stamps and the latency"};
+    best_ = {
+        "joints_not_of_frame",
+        "the views fit when the joints of each may differ by up to " + degrees(fit.largest_rad) +
+            " from those given: the robot moved, or frames and joints are of different moments; let it stand "
+            "still, check the stamps and the latency"};
   }
   bool something_moved() const {
     return std::ranges::any_of(

@@ -125,13 +125,14 @@ ParameterMatrix priors() {
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
-/// One Gauss-Newton step on all views but one, from the common solution, and the residuals it leaves in the one
-/// left out.
+/// One Gauss-Newton step on all views but one, from the common solution, and the residuals it leaves in the
+/// one left out.
 double held_out_residual_m(const std::vector<ViewSums>& views, double correlation) {
   ParameterMatrix information = priors();
   ParameterVector gradient = ParameterVector::Zero();
   for (const ViewSums& view : views) {
-    information += ParameterMatrix(view.equations.information().selfadjointView<Eigen::Lower>()) / correlation;
+    information +=
+        ParameterMatrix(view.equations.information().selfadjointView<Eigen::Lower>()) / correlation;
     gradient += view.equations.gradient() / correlation;
   }
   std::vector<float> residuals;
@@ -141,8 +142,8 @@ double held_out_residual_m(const std::vector<ViewSums>& views, double correlatio
                                      .ldlt()
                                      .solve(gradient - view.equations.gradient() / correlation);
     for (const RangeSample& sample : view.samples)
-      residuals.push_back(static_cast<float>(
-          std::abs(sample.observation.residual - sample.observation.jacobian.dot(step))));
+      residuals.push_back(
+          static_cast<float>(std::abs(sample.observation.residual - sample.observation.jacobian.dot(step))));
   }
   return median(std::move(residuals));
 }

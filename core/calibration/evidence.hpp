@@ -25,8 +25,8 @@ struct SurfaceTally {
 struct Evidence {
   std::vector<SurfaceTally> links;  ///< as RobotModel::links()
   std::vector<SurfaceTally> views;
-  /// Per view, how far (m, rms along the rays) the robot's surface would move if the joints of this view alone
-  /// were free. Large where the joints are not those of the frame.
+  /// Per view, how far (m, rms along the rays) the robot's surface would move if the joints of this view
+  /// alone were free. Large where the joints are not those of the frame.
   std::vector<double> joint_pull_m;
   /// Median |residual| (m) of views judged by the pose of the other views; nothing below 4 views.
   std::optional<double> held_out_residual_m;

@@ -55,7 +55,8 @@ Eigen::VectorXd step_of(const std::vector<NormalEquations>& sums, const std::vec
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
   for (std::size_t v = 0; v < sums.size(); ++v) {
-    const ParameterMatrix own = ParameterMatrix(sums[v].information().selfadjointView<Eigen::Lower>()) / kRepetition;
+    const ParameterMatrix own =
+        ParameterMatrix(sums[v].information().selfadjointView<Eigen::Lower>()) / kRepetition;
     const Eigen::Index row = joint_row(v);
     information.topLeftCorner<6, 6>() += own.topLeftCorner<6, 6>();
     information.block<6, kMaxJointZeros>(0, row) = own.topRightCorner<6, kMaxJointZeros>();
@@ -63,8 +64,8 @@ Eigen::VectorXd step_of(const std::vector<NormalEquations>& sums, const std::vec
     information.block<kMaxJointZeros, kMaxJointZeros>(row, row) =
         own.bottomRightCorner<kMaxJointZeros, kMaxJointZeros>();
     gradient.head<6>() += sums[v].gradient().head<6>() / kRepetition;
-    gradient.segment<kMaxJointZeros>(row) = sums[v].gradient().tail<kMaxJointZeros>() / kRepetition -
-                                            corrections[v] / (kPrior_rad * kPrior_rad);
+    gradient.segment<kMaxJointZeros>(row) =
+        sums[v].gradient().tail<kMaxJointZeros>() / kRepetition - corrections[v] / (kPrior_rad * kPrior_rad);
     information.diagonal().segment<kMaxJointZeros>(row).array() += 1 / (kPrior_rad * kPrior_rad);
   }
   information.diagonal().head<6>().array() += 1e-6 * information.diagonal().head<6>().maxCoeff() + 1e-9;
@@ -73,7 +74,8 @@ Eigen::VectorXd step_of(const std::vector<NormalEquations>& sums, const std::vec
 
 }  // namespace
 
-FreeJointsFit fit_free_joints(std::span<RegistrationView> views, const CameraModel& camera, const Pose& start) {
+FreeJointsFit fit_free_joints(std::span<RegistrationView> views, const CameraModel& camera,
+                              const Pose& start) {
   FreeJointsFit fit;
   fit.T_base_sensor = start;
   fit.agreeing_before = sums_of(views, camera, start, kEndKernel_m).agreeing();
@@ -81,7 +83,8 @@ FreeJointsFit fit_free_joints(std::span<RegistrationView> views, const CameraMod
   const double shrink = std::pow(kEndKernel_m / kStartKernel_m, 1.0 / (kIterations - 1));
   double kernel_m = kStartKernel_m;
   for (int iteration = 0; iteration < kIterations; ++iteration, kernel_m *= shrink) {
-    const Eigen::VectorXd step = step_of(sums_of(views, camera, fit.T_base_sensor, kernel_m).views, corrections);
+    const Eigen::VectorXd step =
+        step_of(sums_of(views, camera, fit.T_base_sensor, kernel_m).views, corrections);
     fit.T_base_sensor = perturbed(fit.T_base_sensor, step.head<6>());
     for (std::size_t v = 0; v < views.size(); ++v) {
       corrections[v] += step.segment<kMaxJointZeros>(6 + static_cast<Eigen::Index>(v) * kMaxJointZeros);

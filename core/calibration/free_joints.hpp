@@ -15,8 +15,9 @@ struct FreeJointsFit {
   double agreeing_before = 0, agreeing_after = 0;
 };
 
-/// Fits the sensor's pose and, in every view for itself, the joints: what a robot that moved while it was seen
-/// needs. Leaves the views at the joints found. For finding out what is wrong, not for a calibration.
-FreeJointsFit fit_free_joints(std::span<RegistrationView> views, const CameraModel& camera, const Pose& start);
+/// Fits the sensor's pose and, in every view for itself, the joints: what a robot that moved while it was
+/// seen needs. Leaves the views at the joints found. For finding out what is wrong, not for a calibration.
+FreeJointsFit fit_free_joints(std::span<RegistrationView> views, const CameraModel& camera,
+                              const Pose& start);
 
 }  // namespace calibrd

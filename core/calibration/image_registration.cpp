@@ -11,11 +11,11 @@
 namespace calibrd {
 namespace {
 
-constexpr int kReach_px = 32;       // outlines are moved this far ...
-constexpr int kStep_px = 2;         // ... in steps of this
-constexpr int kSame_px = 4;         // a place so near is not elsewhere
+constexpr int kReach_px = 32;  // outlines are moved this far ...
+constexpr int kStep_px = 2;    // ... in steps of this
+constexpr int kSame_px = 4;    // a place so near is not elsewhere
 constexpr float kOutlineStep_m = 0.05F;
-constexpr int kAround_px = 6;     // an edge is held against others so near
+constexpr int kAround_px = 6;      // an edge is held against others so near
 constexpr double kNoiseEdges = 4;  // ... and against this many times the image's noise
 
 struct OutlinePoint {
@@ -86,7 +86,8 @@ class EdgeImage {
       const int u = x + static_cast<int>(std::lround(static_cast<float>(s) * nx));
       const int v = y + static_cast<int>(std::lround(static_cast<float>(s) * ny));
       if (u < 1 || v < 1 || u + 1 >= width_ || v + 1 >= height_) continue;
-      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
+      const auto i =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
       best = std::max(best, std::abs(x_[i] * nx + y_[i] * ny));
     }
     return best;
@@ -148,8 +149,8 @@ EdgeSums edges_under(const EdgeImage& image, const std::vector<OutlinePoint>& ou
       const std::size_t cell = EdgeSums::cell_of(row, column);
       for (const OutlinePoint& p : outline) {
         const int x = (mirrored ? image.mirrored_x(p.x) : p.x) + EdgeSums::shift_of(column);
-        const float edge = image.near(x, p.y + EdgeSums::shift_of(row), mirrored ? -p.normal_x : p.normal_x,
-                                      p.normal_y);
+        const float edge =
+            image.near(x, p.y + EdgeSums::shift_of(row), mirrored ? -p.normal_x : p.normal_x, p.normal_y);
         if (edge < 0) continue;
         sums.edges[cell] += edge;
         sums.points[cell] += 1;

@@ -18,9 +18,9 @@ struct ImageRegistration {
   double other_view = 0;               ///< share in the images of the view before or after
 };
 
-/// Moves the outlines of all views together over the images: those of an image that is registered to the depth
-/// lie on edges where they are predicted, and nowhere else as well. `predictions`: what the views' cells show.
-/// `mirrored` and `other_view` are looked at only when `here` does not convince.
+/// Moves the outlines of all views together over the images: those of an image that is registered to the
+/// depth lie on edges where they are predicted, and nowhere else as well. `predictions`: what the views'
+/// cells show. `mirrored` and `other_view` are looked at only when `here` does not convince.
 ImageRegistration look_at_images(std::span<const RegistrationView> views,
                                  std::span<const VirtualMeasurement> predictions, const CameraModel& camera);
 

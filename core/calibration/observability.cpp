@@ -30,7 +30,8 @@ std::string name_of(const Eigen::Vector3d& direction, bool is_rotation, const Po
   const Eigen::Vector3d right = T_base_sensor.linear().col(0), down = T_base_sensor.linear().col(1);
   const NamedAxis axes[] = {
       {sight, "along the line of sight", "about the line of sight"},
-      {Eigen::Vector3d::UnitZ(), "along the vertical axis of the robot", "about the vertical axis of the robot"},
+      {Eigen::Vector3d::UnitZ(), "along the vertical axis of the robot",
+       "about the vertical axis of the robot"},
       {right, "across the line of sight, to the image's side", "about the horizontal axis of the image"},
       {down, "across the line of sight, up and down the image", "about the upright axis of the image"}};
   const auto nearest = std::ranges::max_element(
@@ -45,8 +46,8 @@ void add_weak(const Eigen::Matrix3d& covariance, bool is_rotation, double limit,
     const double sigma = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
     if (sigma <= limit) return;
     const Eigen::Vector3d direction = solver.eigenvectors().col(i);
-    weak.push_back({name_of(direction, is_rotation, T_base_sensor, robot_middle_base), is_rotation, direction,
-                    sigma});
+    weak.push_back(
+        {name_of(direction, is_rotation, T_base_sensor, robot_middle_base), is_rotation, direction, sigma});
   }
 }
 
@@ -59,7 +60,8 @@ std::vector<WeakDirection> weak_directions(const Matrix6d& covariance, const Pos
   std::vector<WeakDirection> weak;
   add_weak(at_robot * covariance * at_robot.transpose(), false, limits.max_sigma_m, T_base_sensor,
            robot_middle_base, weak);
-  add_weak(covariance.topLeftCorner<3, 3>(), true, limits.max_sigma_rad, T_base_sensor, robot_middle_base, weak);
+  add_weak(covariance.topLeftCorner<3, 3>(), true, limits.max_sigma_rad, T_base_sensor, robot_middle_base,
+           weak);
   const auto excess = [&](const WeakDirection& d) {
     return d.sigma / (d.is_rotation ? limits.max_sigma_rad : limits.max_sigma_m);
   };

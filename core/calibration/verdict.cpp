@@ -75,13 +75,11 @@ class Judge {
     if (r.last_step_sigmas > settings_.max_last_step_sigmas)
       doubt("not_converged", "the solution still moved when the iterations ended");
     if (result_.sigma_position_m > settings_.max_sigma_position_m)
-      doubt("position_uncertain",
-            "position is known to " + milli(result_.sigma_position_m, "mm") + " only" +
+      doubt("position_uncertain", "position is known to " + milli(result_.sigma_position_m, "mm") + " only" +
                                       named(result_.weak_directions, false) + "; add postures");
     if (result_.sigma_rotation_rad > settings_.max_sigma_rotation_rad)
-      doubt("rotation_uncertain",
-            "rotation is known to " + milli(result_.sigma_rotation_rad, "mrad") + " only" +
-                                      named(result_.weak_directions, true) + "; add postures");
+      doubt("rotation_uncertain", "rotation is known to " + milli(result_.sigma_rotation_rad, "mrad") +
+                                      " only" + named(result_.weak_directions, true) + "; add postures");
   }
 
   /// Stereo's errors hang together too, but its outlines lie where they are predicted.
@@ -89,8 +87,9 @@ class Judge {
     if (r.range_correlation > settings_.max_range_correlation &&
         r.residual_rms_m > settings_.max_unexplained_rms_m && images.outline_points > 0 &&
         images.here < settings_.min_outline_of_shape)
-      reject("surface_differs", "whole areas of the measured surface lie " + milli(r.residual_rms_m, "mm") +
-                                    " off the model, and so does its outline; is this the model of this robot?");
+      reject("surface_differs",
+             "whole areas of the measured surface lie " + milli(r.residual_rms_m, "mm") +
+                 " off the model, and so does its outline; is this the model of this robot?");
   }
 
   /// What the pixels say view by view.
@@ -101,9 +100,10 @@ class Judge {
       if (!is_at_odds(evidence, v, r)) continue;
       at_odds += (count++ > 0 ? ", " : "") + std::to_string(v);
     }
-    const std::string text = "what view " + at_odds +
-                             " shows is not where its joints put the robot, seen from where the other views see "
-                             "it; was the robot still, and are the joints those of the frame?";
+    const std::string text =
+        "what view " + at_odds +
+        " shows is not where its joints put the robot, seen from where the other views see "
+        "it; was the robot still, and are the joints those of the frame?";
     const double growth = evidence.held_out_residual_m.value_or(0) / std::max(r.residual_rms_m, 1e-4);
     if (share(count, evidence.views.size()) > settings_.max_views_at_odds ||
         (count > 0 && growth > settings_.doubtful_held_out_growth))
@@ -129,18 +129,18 @@ class Judge {
           share(tally.agreeing, tally.predicted) >= settings_.min_link_coverage)
         continue;
       if (share(tally.seen_through, tally.measured) > 0.5 && tally.measured >= settings_.min_link_pixels / 2)
-        reject("link_elsewhere",
-               result_.links[i].link + " is not where the joints put it: the sensor sees through " +
-                   percent(share(tally.seen_through, tally.measured)) +
-                   " of it; check joint order, signs and the robot model");
+        reject("link_elsewhere", result_.links[i].link +
+                                     " is not where the joints put it: the sensor sees through " +
+                                     percent(share(tally.seen_through, tally.measured)) +
+                                     " of it; check joint order, signs and the robot model");
       else if (share(tally.agreeing, tally.predicted) < settings_.min_link_coverage / 2)
         unseen += (unseen.empty() ? "" : ", ") + result_.links[i].link;
     }
     if (!unseen.empty())
       result_.reasons.push_back(
-          {"link_not_seen", unseen +
-                                ": predicted visible, but nothing lies where the model puts it; is a tool or cover "
-                                "missing in the URDF, or does something stand in front?"});
+          {"link_not_seen",
+           unseen + ": predicted visible, but nothing lies where the model puts it; is a tool or cover "
+                    "missing in the URDF, or does something stand in front?"});
   }
 
   /// Whether the images belong to the depth. Asked of a pose that the depth agrees with alone: under a wrong

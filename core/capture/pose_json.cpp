@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/capture/pose_json.hpp"
 
-#include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -11,14 +10,12 @@
 
 #include "core/capture/file_bytes.hpp"
 #include "core/capture/json_document.hpp"
+#include "core/geometry/pose_numbers.hpp"
 
 namespace calibrd {
 namespace {
 
 namespace json = boost::json;
-constexpr double kRotationTolerance = 1e-3;
-constexpr double kLastRowTolerance = 1e-6;  // poses of other tools went through 32-bit floats
-constexpr double kMaxDistance_m = 100;      // beyond any cell: then they are millimetres
 constexpr std::uintmax_t kMaxFileBytes = 16U << 20U;
 
 Error bad_pose(const std::string& name, const std::string& why) {
@@ -48,26 +45,11 @@ std::optional<std::vector<double>> row_major(const json::value& matrix) {
   return numbers;
 }
 
-Result<Pose> checked(const Pose& pose, const std::string& name) {
-  if (pose.translation().cwiseAbs().maxCoeff() <= kMaxDistance_m) return pose;
-  return bad_pose(name, "more than 100 m away; translations are in metres");
-}
-
-Result<Pose> pose_from_numbers(const std::vector<double>& m, const std::string& name) {
-  using Row = Eigen::Map<const Eigen::RowVector4d>;
-  if (m.size() == 16 && !(Row(&m[12]) - Eigen::RowVector4d(0, 0, 0, 1)).isZero(kLastRowTolerance))
-    return bad_pose(name, "the last row of T_base_sensor is not 0 0 0 1");
-  Eigen::Matrix<double, 3, 4> top;
-  top << Row(&m[0]), Row(&m[4]), Row(&m[8]);
-  const Eigen::Matrix3d R = top.leftCols<3>();
-  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= kRotationTolerance) ||
-      R.determinant() < 0)
-    return bad_pose(name, "the rotation part of T_base_sensor is not a rotation");
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Pose pose = Pose::Identity();
-  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
-  pose.translation() = top.col(3);
-  return checked(pose, name);
+/// The pose of the numbers; an error is this module's, with its reason.
+Result<Pose> pose_from(const std::vector<double>& numbers, const std::string& name) {
+  auto pose = pose_of_numbers(numbers);
+  if (!pose) return bad_pose(name, pose.error().message());
+  return pose;
 }
 
 /// The numbers between commas; nothing when a field is not one finite number.
@@ -94,13 +76,7 @@ Result<Pose> pose_from_list(const std::string& text) {
   const auto numbers = comma_separated(text);
   if (!numbers) return bad_pose(text, "neither a file nor numbers between commas");
   if (numbers->size() != 7) return bad_pose(text, std::to_string(numbers->size()) + " numbers instead of 7");
-  const auto& n = *numbers;
-  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);  // Eigen's constructor takes w first
-  if (!(q.norm() > 1e-6 && q.norm() < 1e6)) return bad_pose(text, "the quaternion is zero or huge");
-  Pose pose = Pose::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() << n[0], n[1], n[2];
-  return checked(pose, text);
+  return pose_from(*numbers, text);
 }
 
 }  // namespace
@@ -113,7 +89,7 @@ Result<Pose> parse_pose_json(std::string_view json_text, const std::string& name
   if (matrix == nullptr) return bad_pose(name, "it holds no T_base_sensor");
   const auto numbers = row_major(*matrix);
   if (!numbers) return bad_pose(name, "T_base_sensor is not 3 or 4 rows of 4 numbers");
-  return pose_from_numbers(*numbers, name);
+  return pose_from(*numbers, name);
 }
 
 Result<Pose> read_pose(const std::string& file_or_text) {

@@ -113,7 +113,8 @@ DistanceField::Value DistanceField::at(const Eigen::Vector3f& p) const {
   const Eigen::Vector3f beyond = p - inside;
   if (const float way = beyond.norm(); way > 0) {
     value.distance_m += way;
-    value.gradient = beyond / way;
+    // Along an axis on which the place lies outside, the grid's value stays and the way grows.
+    value.gradient = (beyond.array() == 0).select(value.gradient, beyond / way);
   }
   return value;
 }

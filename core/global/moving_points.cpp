@@ -115,7 +115,7 @@ std::vector<Eigen::Vector3f> thinned(const std::vector<std::uint8_t>& mask, cons
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       if (mask[i] == 0 || !is_supported(mask, camera, x, y)) continue;
-      const Eigen::Vector3f p = (view.depth_m[i] * camera.ray(x, y)).cast<float>();
+      const Eigen::Vector3f p = (view.depth_m[i] * view.rays->at(x, y)).cast<float>();
       auto& [sum, count] = cells.try_emplace(voxel_of(p, voxel_m), Eigen::Vector3f::Zero(), 0).first->second;
       sum += p;
       ++count;

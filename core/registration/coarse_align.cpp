@@ -24,12 +24,12 @@ CameraModel reduced(const CameraModel& camera, int factor) {
   return small;
 }
 
-Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const CameraModel& camera) {
+Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const PixelRays& rays) {
   Eigen::AlignedBox3d box;
   for (int y = 0; y < prediction.height; ++y) {
     for (int x = 0; x < prediction.width; ++x) {
       const float z = prediction.depth_m[static_cast<std::size_t>(y * prediction.width + x)];
-      if (z > 0) box.extend(z * camera.ray(x, y));
+      if (z > 0) box.extend(z * rays.at(x, y));
     }
   }
   return box;
@@ -47,7 +47,7 @@ CloudTree measured_tree(const RegistrationView& view, const CameraModel& camera,
       const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
                                    static_cast<std::size_t>(x)];
       if (z < region.min().z() || z > region.max().z() || z <= 0) continue;
-      const Eigen::Vector3d p = z * camera.ray(x, y);
+      const Eigen::Vector3d p = z * view.rays->at(x, y);
       if (region.contains(p)) points.push_back(p.cast<float>());
     }
   }
@@ -60,7 +60,7 @@ struct Sums {
 };
 
 /// Point-to-plane sums of one view at one pose.
-Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, const CloudTree& measured,
+Sums pull_of(const VirtualMeasurement& prediction, const PixelRays& rays, const CloudTree& measured,
              const Pose& T_base_sensor, double kernel_m) {
   Sums sums;
   const Eigen::Matrix3d R = T_base_sensor.linear();
@@ -68,7 +68,7 @@ Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, co
     for (int x = 0; x < prediction.width; ++x) {
       const auto i = static_cast<std::size_t>(y * prediction.width + x);
       if (prediction.link[i] < 0) continue;
-      const Eigen::Vector3d q = prediction.depth_m[i] * camera.ray(x, y);
+      const Eigen::Vector3d q = prediction.depth_m[i] * rays.at(x, y);
       const auto neighbour = measured.nearest(q);
       if (!neighbour) continue;
       const double distance = neighbour->distance_m / kernel_m;
@@ -91,12 +91,13 @@ Sums pull_of(const VirtualMeasurement& prediction, const CameraModel& camera, co
 Pose coarse_align(std::span<const RegistrationView> views, const CameraModel& camera, const Pose& guess,
                   const CoarseSettings& settings) {
   const CameraModel small = reduced(camera, settings.reduction);
+  const PixelRays rays(small);
   std::vector<std::optional<CloudTree>> measured(views.size());
   std::vector<VirtualMeasurement> predictions(views.size());
   std::vector<Sums> sums(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
     views[v].cell.measure(small, guess, predictions[v]);
-    measured[v].emplace(measured_tree(views[v], camera, bounds_in_sensor(predictions[v], small), settings));
+    measured[v].emplace(measured_tree(views[v], camera, bounds_in_sensor(predictions[v], rays), settings));
   });
 
   Pose pose = guess;
@@ -106,7 +107,7 @@ Pose coarse_align(std::span<const RegistrationView> views, const CameraModel& ca
   for (int iteration = 0; iteration < settings.iterations; ++iteration, kernel_m *= shrink) {
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
       views[v].cell.measure(small, pose, predictions[v]);
-      sums[v] = pull_of(predictions[v], small, *measured[v], pose, kernel_m);
+      sums[v] = pull_of(predictions[v], rays, *measured[v], pose, kernel_m);
     });
     Sums total;
     for (const Sums& s : sums) {

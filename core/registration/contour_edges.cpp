@@ -72,10 +72,18 @@ Observation observe(const RegistrationView& view, int link, const ContourPoint& 
   const Eigen::Vector3d u_base = T_base_sensor.linear() * point.p_sensor;
   o.jacobian.setZero();
   o.jacobian.head<6>() << u_base.cross(a), a;
-  o.jacobian[kContourShift] = 1;
+  o.jacobian[settings.source == EdgeSource::image ? kImageShift : kDepthShift] = 1;
   o.jacobian.tail<kMaxJointZeros>() =
       -view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * a;
   return o;
+}
+
+std::optional<Edge> find_edge(const RegistrationView& view, const CameraModel& camera,
+                              const Pose& T_base_sensor, const ContourPoint& point,
+                              const ContourSettings& settings) {
+  if (settings.source == EdgeSource::depth) return find_depth_step(view, camera, point, settings);
+  return settings.fit_profile ? fit_profile(view, camera, T_base_sensor, point, settings)
+                              : find_step(view, camera, point, settings);
 }
 
 bool is_contour(const VirtualMeasurement& m, int x, int y) {
@@ -98,11 +106,11 @@ void ContourTally::merge(const ContourTally& other) {
 void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
                            const CameraModel& camera, const Pose& T_base_sensor,
                            const ContourSettings& settings, NormalEquations& equations, ContourTally& tally) {
-  if (view.image.empty()) return;
+  if (settings.source == EdgeSource::image && view.image.empty()) return;
   const int blocks_per_row = camera.width / kBlockSide + 1;
   for (int y = kMargin; y + kMargin < camera.height; ++y) {
     for (int x = kMargin; x + kMargin < camera.width; ++x) {
-      if ((x + y) % settings.stride != 0 || !is_contour(prediction, x, y)) continue;
+      if (!is_contour(prediction, x, y) || (x + y) % settings.stride != 0) continue;
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       const float z = prediction.depth_m[i];
@@ -112,8 +120,7 @@ void add_contour_residuals(const RegistrationView& view, const VirtualMeasuremen
       const auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
       if (!point) continue;
       ++tally.predicted;
-      const auto edge = settings.fit_profile ? fit_profile(view, camera, T_base_sensor, *point, settings)
-                                             : find_step(view, camera, *point, settings);
+      const auto edge = find_edge(view, camera, T_base_sensor, *point, settings);
       if (!edge) continue;
       const Observation o = observe(view, prediction.link[i], *point, *edge, camera, T_base_sensor, settings);
       if (o.robust_weight <= 0) continue;

@@ -6,7 +6,11 @@
 
 namespace calibrd {
 
+/// Where the robot's outline is searched.
+enum class EdgeSource { image, depth };
+
 struct ContourSettings {
+  EdgeSource source = EdgeSource::image;
   double search_px = 8;     ///< image edges are looked for this far to both sides of the predicted contour
   double kernel_px = 8;     ///< residuals beyond this have no weight (Tukey's biweight)
   double shift_px = 0;      ///< image edges lie this far outside the predicted contours (estimated)
@@ -26,9 +30,9 @@ struct ContourTally {
 };
 
 /// Residuals across the line of sight, which range cannot give: the robot's occluding contours are predicted
-/// by the virtual sensor, and image edges are searched along their normals (Drummond & Cipolla 2002). Needs
-/// no mask. `prediction` must be what `view.cell` shows from `T_base_sensor`. Does nothing when the view has
-/// no image.
+/// by the virtual sensor, and edges of the image or the depth are searched along their normals (Drummond &
+/// Cipolla 2002). Needs no mask. `prediction` must be what `view.cell` shows from `T_base_sensor`. Does
+/// nothing when the view has no image and edges of one are asked for.
 void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
                            const CameraModel& camera, const Pose& T_base_sensor,
                            const ContourSettings& settings, NormalEquations& equations, ContourTally& tally);

@@ -47,19 +47,23 @@ class ProfileModel {
                const ContourPoint& point, int reach)
       : reach_(reach) {
     const int fine_reach = reach * kFinePerSample + kBlurRadius + 1;
-    std::vector<Row> sharp;
-    sharp.reserve(static_cast<std::size_t>(2 * fine_reach));
+    std::vector<Row> sharp(static_cast<std::size_t>(2 * fine_reach), Row(0, 0, 1));
+    const Eigen::Vector2d inward = -point.outward;
     const float rim = static_cast<float>(point.p_sensor.z());
-    for (int k = -fine_reach; k < fine_reach; ++k) {
-      const Eigen::Vector2d p = point.pixel + kFine_px * (k + 0.5) * point.outward;
-      Row row(0, 0, 1);
-      if (k < 0) {
-        const Eigen::Vector3d ray = camera.ray(p.x(), p.y());
-        const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
-        if (!beyond(hit.depth_m, rim))
-          row << 1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0;
+    // The cosine changes fast at the rim and slowly further in: cast few rays there and interpolate.
+    int from = 0;
+    Row at_from = light_at(view, camera, T_base_sensor, point.pixel + 0.5 * kFine_px * inward, rim);
+    sharp[static_cast<std::size_t>(fine_reach - 1)] = at_from;
+    while (from + 1 < fine_reach) {
+      const int to = std::min(from + 1 + from / 3, fine_reach - 1);
+      const Row at_to =
+          light_at(view, camera, T_base_sensor, point.pixel + kFine_px * (to + 0.5) * inward, rim);
+      for (int k = from + 1; k <= to; ++k) {
+        const double share = static_cast<double>(k - from) / (to - from);
+        sharp[static_cast<std::size_t>(fine_reach - 1 - k)] = (1 - share) * at_from + share * at_to;
       }
-      sharp.push_back(row);
+      from = to;
+      at_from = at_to;
     }
     blur(sharp, fine_reach);
   }
@@ -71,6 +75,14 @@ class ProfileModel {
   static constexpr int kFinePerSample = 2;
   static constexpr double kFine_px = kSampleStep_px / kFinePerSample;
   static constexpr int kBlurRadius = 10;  // fine steps
+
+  static Row light_at(const RegistrationView& view, const CameraModel& camera, const Pose& T_base_sensor,
+                      const Eigen::Vector2d& pixel, float rim_depth_m) {
+    const Eigen::Vector3d ray = camera.ray(pixel.x(), pixel.y());
+    const SurfaceHit hit = view.cell.hit_along(ray, T_base_sensor);
+    if (beyond(hit.depth_m, rim_depth_m)) return {0, 0, 1};
+    return {1, -hit.normal.dot(ray.cast<float>()) / static_cast<float>(ray.norm()), 0};
+  }
 
   /// Weights of fine steps at odd half steps from a sample: a pixel's width, prepare_views' smoothing and
   /// bilinear sampling together blur by 0.78 px.
@@ -158,13 +170,42 @@ std::optional<Edge> find_step(const RegistrationView& view, const CameraModel& c
   return best;
 }
 
+std::optional<Edge> find_depth_step(const RegistrationView& view, const CameraModel& camera,
+                                    const ContourPoint& point, const ContourSettings& settings) {
+  constexpr double kDepthEdgeSigma_px = 1.0;
+  constexpr int kSure = 4;  // samples in a row on the robot, and off it
+  const int reach = static_cast<int>(std::ceil(settings.search_px / kSampleStep_px)) + kSure;
+  const auto rim = static_cast<float>(point.p_sensor.z());
+  int on_robot = 0, off_robot = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    const Eigen::Vector2d p = point.pixel + kSampleStep_px * k * point.outward;
+    const auto x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
+    if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) return std::nullopt;
+    const float z = view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                                 static_cast<std::size_t>(x)];
+    if (z > 0 && z < rim - kContourStep_m) return std::nullopt;  // something in front
+    const bool is_robot = z > 0 && z < rim + kContourStep_m;
+    if (is_robot) {
+      on_robot += 1 + off_robot;  // a short gap is a drop-out
+      off_robot = 0;
+      continue;
+    }
+    if (on_robot < kSure) {
+      on_robot = 0;
+      continue;
+    }
+    if (++off_robot == kSure) return Edge{kSampleStep_px * (k - kSure + 0.5), kDepthEdgeSigma_px};
+  }
+  return std::nullopt;
+}
+
 std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel& camera,
                                 const Pose& T_base_sensor, const ContourPoint& point,
                                 const ContourSettings& settings) {
   constexpr double kWindow_px = 4;
   constexpr double kShiftStep_px = kSampleStep_px;
   constexpr double kWorstFit = 0.15;       // of the profile's variation may stay unexplained
-  constexpr double kModelFloor_px = 0.15;  // what the light model itself gets wrong
+  constexpr double kModelFloor_px = 0.30;  // what the light model itself gets wrong
   const int reach = static_cast<int>(kWindow_px / kSampleStep_px);
   const auto grey = sample_profile(view, camera, point, reach);
   if (!grey) return std::nullopt;

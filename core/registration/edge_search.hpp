@@ -30,6 +30,11 @@ struct Edge {
 std::optional<Edge> find_step(const RegistrationView& view, const CameraModel& camera,
                               const ContourPoint& point, const ContourSettings& settings);
 
+/// Where the measured depth leaves the robot's: for views without an image. Coarser, and biased by how the
+/// sensor fattens or frays what stands in front, which the estimated shift of all contours takes up.
+std::optional<Edge> find_depth_step(const RegistrationView& view, const CameraModel& camera,
+                                    const ContourPoint& point, const ContourSettings& settings);
+
 /// The move by which the modelled light profile fits the image; nothing when it explains the profile badly,
 /// which is then of something else.
 std::optional<Edge> fit_profile(const RegistrationView& view, const CameraModel& camera,

@@ -10,6 +10,7 @@ namespace calibrd {
 
 /// Joint zeros are estimated for this many joints, counted from the base; further ones keep what is reported.
 constexpr int kMaxJointZeros = 8;
+using JointZeros = Eigen::Matrix<double, kMaxJointZeros, 1>;  ///< true minus reported position
 using PointByJoints = Eigen::Matrix<double, 3, kMaxJointZeros>;
 
 /// How the joints move what hangs on them, at one posture.

@@ -10,9 +10,19 @@
 namespace calibrd {
 
 /// What is estimated: the pose's δ = (δω, δt) as in perturbed(); offset (m), scale - 1 and the periodic term
-/// of the range (sine and cosine in m, period in m); how far (px) image edges lie outside the predicted
-/// contours; and the joint zeros (rad or m), true position minus reported one.
-enum Parameter : int { kPose = 0, kOffset = 6, kScale, kSine, kCosine, kPeriod, kContourShift, kJointZeros };
+/// of the range (sine and cosine in m, period in m); how far (px) edges of the image and of the depth lie
+/// outside the predicted contours; and the joint zeros (rad or m), true position minus reported one.
+enum Parameter : int {
+  kPose = 0,
+  kOffset = 6,
+  kScale,
+  kSine,
+  kCosine,
+  kPeriod,
+  kImageShift,
+  kDepthShift,
+  kJointZeros
+};
 constexpr int kParameters = kJointZeros + kMaxJointZeros;
 using ParameterVector = Eigen::Matrix<double, kParameters, 1>;
 using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;

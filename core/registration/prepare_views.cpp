@@ -68,7 +68,7 @@ double difference_noise(const std::vector<float>& image) {
 
 }  // namespace
 
-void RegistrationView::apply_zeros(const Eigen::Matrix<double, kMaxJointZeros, 1>& zeros) {
+void RegistrationView::apply_zeros(const JointZeros& zeros) {
   std::vector<double> positions = reported_joints;
   for (std::size_t j = 0; j < positions.size() && j < kMaxJointZeros; ++j)
     positions[j] += zeros[static_cast<Eigen::Index>(j)];
@@ -80,11 +80,12 @@ std::vector<RegistrationView> prepare_views(const VirtualCell& cell, const Camer
                                             std::span<const View> views, const PrepareSettings& settings) {
   std::vector<RegistrationView> prepared;
   prepared.reserve(views.size());
+  const auto rays = std::make_shared<const PixelRays>(camera);
   for (const View& view : views) {
     VirtualCell posed = cell;
     posed.set_joints(view.joint_positions_rad);
     JointAxes axes(cell.robot(), posed.link_poses());
-    RegistrationView ready{std::move(posed), view.joint_positions_rad, std::move(axes), {}, {}, 0};
+    RegistrationView ready{std::move(posed), view.joint_positions_rad, std::move(axes), {}, {}, 0, rays};
     ready.depth_m = without_mixed_pixels(to_metres(view.depth), camera.width, camera.height,
                                          static_cast<float>(settings.mixed_step));
     if (settings.use_images && view.image) {

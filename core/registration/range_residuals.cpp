@@ -56,7 +56,7 @@ ParameterVector jacobian_of(const RegistrationView& view, int link, const Pose& 
   const double factor = -correction.slope(z) * z / n.dot(p_sensor);
   ParameterVector jacobian;
   jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z), 0.0,
-      -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
+      0.0, -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
   return jacobian;
 }
 
@@ -89,7 +89,7 @@ void add_range_residuals(const RegistrationView& view, const VirtualMeasurement&
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       if (prediction.link[i] < 0 || is_rim(prediction, x, y)) continue;
       const double z = prediction.depth_m[i];
-      const Eigen::Vector3d d = camera.ray(x, y);
+      const Eigen::Vector3d d = view.rays->at(x, y);
       const Eigen::Vector3d n = prediction.normal[i].cast<double>();
       const double slope = n.dot(d);  // below 0: normals face the sensor
       const double cos_incidence = -slope / d.norm();

@@ -2,23 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/registration/refine.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/registration/covariance.hpp"
 #include "core/registration/range_period.hpp"
 #include "core/registration/reported_joints.hpp"
+#include "core/registration/view_sums.hpp"
+
 namespace calibrd {
 namespace {
 
 /// One stage of the annealing: kernels and freedoms.
 struct Stage {
   int iterations;
-  int stride;
+  int stride;                // of pixels in both directions, and of contour pixels along the contour
   double range_kernel_m;     // 0: from the noise found
   double contour_search_px;  // 0: no contours yet
   bool fit_profile;          // fit modelled light profiles to the contours rather than find the steepest step
@@ -29,25 +30,20 @@ struct Stage {
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
 constexpr int kFullSteps = 5;
+/// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
+/// errors.
+constexpr double kMinEdgeScatter = 0.5;
+/// Chance lets the cost fall by as much through seven joint zeros once in twenty times.
+constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
 /// simulated captures this much larger, squared, than the scatter of residuals alone says.
-constexpr double kModelAllowance = 3;
+constexpr double kModelAllowance = 1.55;
 
-struct Sums {
-  NormalEquations range, contour;
-  RangeTally range_tally;
-  ContourTally contour_tally;
-  std::vector<RangeSample> samples;
+/// What the scatter of one kind of edges showed so far.
+struct EdgeNoise {
+  double sigma_px = 0.5;
+  double correlation = 1;  // times that errors are less independent than their number says
 };
-
-/// Robust standard deviation of values that scatter about 0.
-double robust_sigma(std::vector<float> values) {
-  if (values.empty()) return 1;
-  for (float& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return std::max(1.4826 * static_cast<double>(*middle), 1e-3);
-}
 
 class Refiner {
  public:
@@ -58,20 +54,29 @@ class Refiner {
   }
 
   Refinement run() {
-    const Stage stages[] = {{6, 2, 0.06, 0, false, false, false},
-                            {5, 2, 0.03, 10, false, true, false},
-                            {4, 1, 0, 5, false, true, false}};
-    const Stage last{settings_.final_iterations, 1, 0, 3, true, true, settings_.joint_zero_prior > 0};
+    const Stage stages[] = {{4, 3, 0.06, 0, false, false, false},
+                            {4, 3, 0.03, 10, false, true, false},
+                            {3, 2, 0, 5, false, true, false}};
+    const bool zeros = settings_.joint_zero_prior > 0;
+    Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
+    Stage last{5, 1, 0, 3, true, true, zeros};
+    const Stage judged = last;  // what is known is known with the zeros free, whether they are used or not
     double progress = 0;
     for (const Stage& stage : stages) {
       run_stage(stage);
       progress += 0.25;
       if (settings_.keep_going && !settings_.keep_going(progress)) return result_;
     }
-    step(last, 0);
-    choose_period(last);
+    step(closing, 0);
+    choose_period(closing);
+    run_stage(closing);
+    if (zeros && !are_zeros_significant()) {
+      closing.free_zeros = last.free_zeros = false;
+      set_zeros(JointZeros::Zero());
+      run_stage(closing);
+    }
     run_stage(last);
-    finish(last);
+    finish(judged);
     return result_;
   }
 
@@ -81,35 +86,28 @@ class Refiner {
     for (int i = 0; i < stage.iterations && !small_step_; ++i) step(stage, i);
   }
 
-  Sums collect(const Stage& stage, bool keep_samples = false) {
-    const RangeSettings range = range_settings(stage);
+  ViewSums collect(const Stage& stage, bool keep_samples = false) {
+    ViewSumSettings settings;
+    settings.range = range_settings(stage);
+    for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
+      settings.contour[k] = contour_settings(stage, kEdgeSources[k]);
+    settings.with_contours = stage.contour_search_px > 0;
+    settings.keep_samples = keep_samples;
+    return sum_views(views_, predictions_, camera_, result_.T_base_sensor, result_.correction, settings);
+  }
+
+  ContourSettings contour_settings(const Stage& stage, EdgeSource source) const {
     ContourSettings contour;
+    contour.source = source;
     contour.search_px = contour.kernel_px = stage.contour_search_px;
     // Once profiles are fitted, what lies several sigmas away is another edge.
+    const double sigma_px = edge_noise_[static_cast<std::size_t>(source)].sigma_px;
     if (stage.fit_profile)
-      contour.kernel_px = std::clamp(kKernelSigmas * contour_sigma_px_, 0.7, stage.contour_search_px);
-    contour.stride = 2;
+      contour.kernel_px = std::clamp(kKernelSigmas * sigma_px, 0.7, stage.contour_search_px);
+    contour.stride = stage.stride + 2;
     contour.fit_profile = stage.fit_profile;
-    contour.shift_px = result_.contour_shift_px;
-    std::vector<Sums> per_view(views_.size());
-    tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
-      views_[v].cell.measure(camera_, result_.T_base_sensor, predictions_[v]);
-      Sums& s = per_view[v];
-      add_range_residuals(views_[v], predictions_[v], camera_, result_.T_base_sensor, result_.correction,
-                          range, s.range, s.range_tally, keep_samples ? &s.samples : nullptr);
-      if (stage.contour_search_px > 0)
-        add_contour_residuals(views_[v], predictions_[v], camera_, result_.T_base_sensor, contour, s.contour,
-                              s.contour_tally);
-    });
-    Sums total;
-    for (const Sums& s : per_view) {
-      total.range.merge(s.range);
-      total.contour.merge(s.contour);
-      total.range_tally.merge(s.range_tally);
-      total.contour_tally.merge(s.contour_tally);
-      total.samples.insert(total.samples.end(), s.samples.begin(), s.samples.end());
-    }
-    return total;
+    contour.shift_px = source == EdgeSource::image ? result_.image_shift_px : result_.depth_shift_px;
+    return contour;
   }
 
   RangeSettings range_settings(const Stage& stage) const {
@@ -123,13 +121,15 @@ class Refiner {
   }
 
   /// Weighs range and contour by what their own scatter says they are worth.
-  NormalEquations weighed(const Sums& sums, bool scatter_is_noise) {
+  NormalEquations weighed(const ViewSums& sums, bool scatter_is_noise) {
     if (scatter_is_noise) {
       result_.range_correlation = sums.range.correlation_factor();
-      result_.contour_correlation = sums.contour.correlation_factor();
     }
-    if (!sums.contour_tally.residuals_px.empty())
-      contour_sigma_px_ = robust_sigma(sums.contour_tally.residuals_px);
+    for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
+      const ContourSums& edges = sums.contour[k];
+      if (scatter_is_noise) edge_noise_[k].correlation = edges.equations.correlation_factor();
+      if (!edges.tally.residuals_px.empty()) edge_noise_[k].sigma_px = robust_sigma(edges.tally.residuals_px);
+    }
     NormalEquations all = sums.range.scaled(range_weight(sums));
     all.merge(contour_part(sums));
     if (scatter_is_noise)
@@ -138,14 +138,18 @@ class Refiner {
     return all;
   }
 
-  double range_weight(const Sums& sums) const {
+  double range_weight(const ViewSums& sums) const {
     const double scale = robust_sigma(sums.range_tally.whitened);
     return 1 / (scale * scale * result_.range_correlation);
   }
 
-  NormalEquations contour_part(const Sums& sums) const {
-    const double scale = robust_sigma(sums.contour_tally.whitened);
-    return sums.contour.scaled(1 / (scale * scale * result_.contour_correlation));
+  NormalEquations contour_part(const ViewSums& sums) const {
+    NormalEquations all;
+    for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
+      const double scale = std::max(robust_sigma(sums.contour[k].tally.whitened), kMinEdgeScatter);
+      all.merge(sums.contour[k].equations.scaled(1 / (scale * scale * edge_noise_[k].correlation)));
+    }
+    return all;
   }
 
   /// Everything known before the views were seen, as one observation per parameter.
@@ -162,7 +166,8 @@ class Refiner {
     add(kSine, c.periodic_sin_m, settings_.periodic_prior_m);
     add(kCosine, c.periodic_cos_m, settings_.periodic_prior_m);
     add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0, settings_.period_prior_m);
-    add(kContourShift, result_.contour_shift_px, settings_.contour_shift_prior_px);
+    add(kImageShift, result_.image_shift_px, settings_.image_shift_prior_px);
+    add(kDepthShift, result_.depth_shift_px, settings_.depth_shift_prior_px);
     const double zero_sigma = stage.free_zeros ? settings_.joint_zero_prior : kHeld;
     for (int j = 0; j < kMaxJointZeros; ++j)
       add(static_cast<Parameter>(kJointZeros + j), result_.joint_zeros[j], zero_sigma);
@@ -179,7 +184,7 @@ class Refiner {
   }
 
   void choose_period(const Stage& stage) {
-    const Sums sums = collect(stage, true);
+    const ViewSums sums = collect(stage, true);
     weighed(sums, true);
     ParameterMatrix information = contour_part(sums).information();
     ParameterVector gradient = contour_part(sums).gradient();
@@ -192,14 +197,17 @@ class Refiner {
   }
 
   void step(const Stage& stage, int iteration) {
-    const Sums sums = collect(stage);
+    const ViewSums sums = collect(stage);
     const NormalEquations all = weighed(sums, stage.range_kernel_m == 0);
     if (all.count() < 50) return;
     ParameterVector gradient;
     const ParameterMatrix information = with_priors(all, stage, gradient);
     // Image edges and pixels change sides between steps; halved steps settle that jitter.
     const double pace = iteration < kFullSteps ? 1.0 : 0.5;
-    const ParameterVector delta = pace * information.ldlt().solve(gradient);
+    const Eigen::LDLT<ParameterMatrix> solver(information);
+    const ParameterVector full_step = solver.solve(gradient);
+    const ParameterVector delta = pace * full_step;
+    note_step(full_step.head<6>(), solver);
     result_.T_base_sensor = perturbed(result_.T_base_sensor, delta.head<6>());
     DepthCorrection& c = result_.correction;
     c.offset_m += delta[kOffset];
@@ -209,17 +217,45 @@ class Refiner {
       c.periodic_cos_m += delta[kCosine];
       c.periodic_period_m = std::max(0.2, c.periodic_period_m + delta[kPeriod]);
     }
-    result_.contour_shift_px += delta[kContourShift];
-    if (stage.free_zeros) {
-      result_.joint_zeros += delta.tail<kMaxJointZeros>();
-      for (RegistrationView& view : views_) view.apply_zeros(result_.joint_zeros);
-    }
-    result_.last_step_sigmas = std::sqrt(delta.dot(information * delta));
-    small_step_ = result_.last_step_sigmas < settings_.convergence_sigmas;
+    result_.image_shift_px += delta[kImageShift];
+    result_.depth_shift_px += delta[kDepthShift];
+    if (stage.free_zeros) set_zeros(result_.joint_zeros + delta.tail<kMaxJointZeros>());
+    last_information_ = information;
+    small_step_ = std::sqrt(delta.dot(information * delta)) < settings_.convergence_sigmas;
+  }
+
+  void set_zeros(const JointZeros& zeros) {
+    result_.joint_zeros = zeros;
+    for (RegistrationView& view : views_) view.apply_zeros(zeros);
+  }
+
+  /// Whether the joint zeros explain more than chance would: how far the cost falls by them, everything else
+  /// solved for beside them. Zeros of a robot that has none would only carry noise into the pose.
+  bool are_zeros_significant() const {
+    const auto others = kJointZeros;
+    const Eigen::MatrixXd coupling = last_information_.bottomLeftCorner(kMaxJointZeros, others);
+    const Eigen::MatrixXd known = last_information_.topLeftCorner(others, others);
+    const Eigen::MatrixXd alone = last_information_.bottomRightCorner(kMaxJointZeros, kMaxJointZeros) -
+                                  coupling * known.ldlt().solve(coupling.transpose());
+    const double fall = result_.joint_zeros.dot(alone * result_.joint_zeros);
+    return fall > kSignificantFall;
+  }
+
+  /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
+  /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
+  void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
+    constexpr std::size_t kRemembered = 2;
+    last_steps_.push_back(pose_step);
+    if (last_steps_.size() > kRemembered) last_steps_.erase(last_steps_.begin());
+    Vector6d mean = Vector6d::Zero();
+    for (const Vector6d& step : last_steps_) mean += step / static_cast<double>(last_steps_.size());
+    const ParameterMatrix covariance = information.solve(ParameterMatrix::Identity());
+    const Matrix6d of_pose = covariance.topLeftCorner<6, 6>();
+    result_.last_step_sigmas = std::sqrt(mean.dot(of_pose.ldlt().solve(mean)) / 6);
   }
 
   void finish(const Stage& stage) {
-    Sums sums = collect(stage);
+    ViewSums sums = collect(stage);
     const NormalEquations all = weighed(sums, true);
     ParameterVector gradient;
     const ParameterMatrix information = with_priors(all, stage, gradient);
@@ -228,7 +264,8 @@ class Refiner {
     const Matrix6d pose_information = information.topLeftCorner<6, 6>();
     result_.weakest_eigenvalue = Eigen::SelfAdjointEigenSolver<Matrix6d>(pose_information).eigenvalues()[0];
     result_.range = std::move(sums.range_tally);
-    result_.contour = std::move(sums.contour_tally);
+    result_.contour = std::move(sums.contour[0].tally);
+    result_.depth_contour = std::move(sums.contour[1].tally);
   }
 
   /// From the pose of the true base to the pose that is right for the joints as reported.
@@ -248,8 +285,10 @@ class Refiner {
   const RefineSettings& settings_;
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
+  std::vector<Vector6d> last_steps_;
+  ParameterMatrix last_information_ = ParameterMatrix::Zero();
   double period_start_m_ = 0;
-  double contour_sigma_px_ = 0.5;
+  std::array<EdgeNoise, 2> edge_noise_;  // by EdgeSource
   bool small_step_ = false;
 };
 

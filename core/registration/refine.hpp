@@ -16,8 +16,9 @@ struct RefineSettings {
   double scale_prior = 0.005;       ///< and of the range scale
   double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
   double period_prior_m = 0.08;     ///< and of its period about the best candidate
-  double contour_shift_prior_px = 0.3;
-  double joint_zero_prior = 1e-3;  ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
+  double image_shift_prior_px = 0.3;
+  double depth_shift_prior_px = 2;  ///< stereo fattens what stands in front, time of flight frays it
+  double joint_zero_prior = 1e-3;   ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
   double convergence_sigmas = 0.15;
@@ -30,19 +31,19 @@ struct Refinement {
   DepthCorrection correction;
   /// Joint zeros found (true minus reported position) and their standard deviations, rad or m. The pose is
   /// the one that is right for the joints as reported; the zeros are not hidden in it.
-  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zeros = Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
-  Eigen::Matrix<double, kMaxJointZeros, 1> joint_zero_sigmas =
-      Eigen::Matrix<double, kMaxJointZeros, 1>::Zero();
-  double contour_shift_px = 0;             ///< image edges lie this far outside the predicted contours
+  JointZeros joint_zeros = JointZeros::Zero();
+  JointZeros joint_zero_sigmas = JointZeros::Zero();
+  /// Edges lie this far (px) outside the predicted contours, in the image and in the depth.
+  double image_shift_px = 0, depth_shift_px = 0;
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  double last_step_sigmas = 0;             ///< length of the last step against the uncertainty of the result
-  double residual_rms_m = 0;               ///< of the range residuals that agree
-  double sigma_factor = 1;                 ///< noise found over noise expected
-  double range_correlation = 1;  ///< times that range errors are less independent than their number says
-  double contour_correlation = 1;
+  double last_step_sigmas = 0;    ///< drift of the pose over the last steps, in its own standard deviations
+  double residual_rms_m = 0;      ///< of the range residuals that agree
+  double sigma_factor = 1;        ///< noise found over noise expected
+  double range_correlation = 1;   ///< times that range errors are less independent than their number says
   double weakest_eigenvalue = 0;  ///< smallest eigenvalue of the pose information (m⁻², rotation at 1 m)
   RangeTally range;
-  ContourTally contour;
+  ContourTally contour;        ///< of the image
+  ContourTally depth_contour;  ///< of the depth
 };
 
 /// Gauss-Newton on range (point-to-plane on projective pairs) and, where views carry images, contour

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/calibration/view.hpp"
 #include "core/geometry/camera_model.hpp"
+#include "core/geometry/pixel_rays.hpp"
 #include "core/registration/joint_axes.hpp"
 #include "core/virtual_cell/virtual_cell.hpp"
 
@@ -22,9 +24,10 @@ struct RegistrationView {
   std::vector<float> image;             ///< smoothed grey values, row-major; empty when there is none
   double image_noise =
       0;  ///< standard deviation of `image`'s horizontal differences without edges, grey values
+  std::shared_ptr<const PixelRays> rays;  ///< of the camera the view was taken with
 
   /// Puts the robot where the reported joints and these zeros put it.
-  void apply_zeros(const Eigen::Matrix<double, kMaxJointZeros, 1>& zeros);
+  void apply_zeros(const JointZeros& zeros);
 };
 
 struct PrepareSettings {

@@ -35,7 +35,7 @@ Eigen::Matrix<double, 6, kMaxJointZeros> reported_joints_map(std::span<const Reg
                               static_cast<std::size_t>(x);
         const int link = predictions[v].link[i];
         if (link < 0) continue;
-        const Eigen::Vector3d p_base = T_base_sensor * (predictions[v].depth_m[i] * camera.ray(x, y));
+        const Eigen::Vector3d p_base = T_base_sensor * (predictions[v].depth_m[i] * views[v].rays->at(x, y));
         // δ moves the point by δω×u + δt; it shall undo what the zeros did to it.
         const Eigen::Vector3d u = p_base - T_base_sensor.translation();
         Eigen::Matrix<double, 3, 6> by_pose;

@@ -3,6 +3,7 @@
 #include "core/robot/mesh_path.hpp"
 
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -67,9 +68,16 @@ std::optional<fs::path> find_plain_file(const fs::path& path, std::span<const fs
   return std::nullopt;
 }
 
+/// Each folder once, however it is written.
 std::string listing(std::span<const fs::path> folders) {
   std::string text;
-  for (const auto& folder : folders) text += (text.empty() ? "" : ", ") + folder.string();
+  std::set<fs::path> named;
+  for (const auto& folder : folders) {
+    std::error_code ignored;
+    const auto canonical = fs::weakly_canonical(folder, ignored);
+    if (named.insert(canonical.empty() ? folder : canonical).second)
+      text += (text.empty() ? "" : ", ") + folder.string();
+  }
   return text;
 }
 

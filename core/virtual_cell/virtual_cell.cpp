@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "core/virtual_cell/link_scenes.hpp"
-#include "core/virtual_cell/ray_table.hpp"
+#include "core/virtual_cell/ray_tables.hpp"
 
 namespace calibrd {
 namespace {
@@ -59,8 +58,9 @@ RTCRayHit8 make_rays(const RayTable::Packet& packet, const Eigen::Matrix3f& R_ba
 }  // namespace
 
 struct VirtualCell::Impl {
-  Impl(const RobotModel& model, std::shared_ptr<const LinkScenes> shared)
-      : robot(&model), links(std::move(shared)) {
+  Impl(const RobotModel& model, std::shared_ptr<const LinkScenes> shared_links,
+       std::shared_ptr<RayTables> shared_tables)
+      : robot(&model), links(std::move(shared_links)), ray_tables(std::move(shared_tables)) {
     scene = rtcNewScene(links->device());
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     for (const LinkScenes::Surface& surface : links->surfaces()) {
@@ -86,7 +86,8 @@ struct VirtualCell::Impl {
   RTCScene scene = nullptr;
   std::vector<RTCGeometry> instances;  // one per surface of `links`
   std::vector<Pose> T_base_link;       // one per link of the robot
-  mutable std::optional<RayTable> rays;
+  std::shared_ptr<RayTables> ray_tables;
+  mutable std::shared_ptr<const RayTable> rays;
 };
 
 void VirtualCell::Impl::trace(const RayTable::Packet& packet, int column, int row,
@@ -113,11 +114,12 @@ void VirtualCell::Impl::trace(const RayTable::Packet& packet, int column, int ro
 }
 
 VirtualCell::VirtualCell(const RobotModel& robot)
-    : impl_(std::make_unique<Impl>(robot, std::make_shared<LinkScenes>(robot))) {
+    : impl_(
+          std::make_unique<Impl>(robot, std::make_shared<LinkScenes>(robot), std::make_shared<RayTables>())) {
   set_joints(std::vector<double>(robot.position_count(), 0.0));
 }
 VirtualCell::VirtualCell(const VirtualCell& other)
-    : impl_(std::make_unique<Impl>(*other.impl_->robot, other.impl_->links)) {
+    : impl_(std::make_unique<Impl>(*other.impl_->robot, other.impl_->links, other.impl_->ray_tables)) {
   place(other.impl_->T_base_link);
 }
 VirtualCell::~VirtualCell() = default;
@@ -176,7 +178,7 @@ void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,
   out.depth_m.assign(pixels, 0.0F);
   out.normal.assign(pixels, Eigen::Vector3f::Zero());
   out.link.assign(pixels, std::int16_t{-1});
-  if (!impl_->rays || !impl_->rays->fits(camera)) impl_->rays.emplace(camera);
+  if (!impl_->rays || !impl_->rays->fits(camera)) impl_->rays = impl_->ray_tables->of(camera);
 
   std::vector<Eigen::Matrix3f> R_sensor_link;
   std::vector<Box2> reach;

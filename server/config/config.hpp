@@ -39,6 +39,7 @@ struct LinkConfig {
   Duration backoff_cap{500};
   Duration eviction_within{10'000};
   Duration eviction_pause{30'000};
+  Duration latency{0};
 };
 
 struct RobotConfig {

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "api/pose/pose_numbers.hpp"
+#include "core/geometry/pose_numbers.hpp"
 #include "core/robot/nearest_name.hpp"
 #include "server/config/config_error.hpp"
 
@@ -257,7 +257,7 @@ Kind<std::optional<Pose>> optional_pose() {
             const auto numbers = as_numbers(value);
             if (!numbers)
               return bad(shown(value) + " is not a pose: a list of 7, 12 or 16 numbers is wanted");
-            auto pose = api::pose_of_numbers(*numbers);
+            auto pose = pose_of_numbers(*numbers);
             if (!pose) return bad(pose.error().message());
             return std::optional<Pose>(*pose);
           },

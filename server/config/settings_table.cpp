@@ -106,6 +106,8 @@ void declare_link(std::vector<Setting>& table) {
       "A connection closed so soon after it was accepted has lost its slot to another client.");
   key("eviction_pause", &LinkConfig::eviction_pause, duration(0ms, 1h), "",
       "Pause after two such closes in a row.");
+  key("latency", &LinkConfig::latency, duration(0ms, 1s), "",
+      "From the moment joints were where a message says to its arrival; it is taken off their stamp.");
 }
 
 void declare_joints(std::vector<Setting>& table) {
@@ -180,7 +182,7 @@ void declare_sensors(std::vector<Setting>& table) {
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
-      "Rough T_base_sensor to start the first calibration from.");
+      "Rough T_base_sensor; only makes the first calibration faster.");
 }
 
 void declare_workspace(std::vector<Setting>& table) {
@@ -190,7 +192,8 @@ void declare_workspace(std::vector<Setting>& table) {
   setting.type = "[x, y, z]";
   setting.unit = "m";
   setting.meaning =
-      "Point of the base frame where the pose must be good: every calibration tells its predicted error there.";
+      "Point of the base frame where the pose must be good: every calibration tells its predicted error "
+      "there.";
   setting.set = [kind](Config& config, const Names& names, const RawValue& raw) -> Status {
     auto value = kind.read(raw);
     if (!value) return value.error();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/live_cell/calibration_jobs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
@@ -14,6 +15,13 @@ namespace calibrd {
 using api::ApiError;
 using api::CalibrationReport;
 using api::JobStatus;
+
+namespace {
+
+/// Without a guess the sensor is found from what moves between two postures.
+constexpr int kPosturesFromNothing = 2;
+
+}  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
                                  Log log, JobSettings settings)
@@ -47,7 +55,10 @@ Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& 
   if (*before) return **before;
   if (const auto busy = active(sensor.id()); !busy.empty())
     return fail(ApiError::calibration_in_progress, busy);
-  const auto job = make_job(request, sensor, guess);
+  const auto start_pose = request.guess_T_base_sensor ? request.guess_T_base_sensor : guess;
+  if (!start_pose && request.postures && *request.postures < kPosturesFromNothing)
+    return fail(ApiError::guess_needed, sensor.id());
+  const auto job = make_job(request, sensor, start_pose);
   if (auto added = store_.add(job->report, request); !added)
     return fail(ApiError::storage_failed, added.error().message());
   {
@@ -79,6 +90,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   auto job = std::make_shared<Job>();
   auto collector = settings_.collector;
   collector.postures = request.postures.value_or(collector.postures);
+  if (!guess) collector.postures = std::max(collector.postures, kPosturesFromNothing);
   job->report.id = new_id();
   job->report.sensor_id = sensor.id();
   job->report.created = std::chrono::system_clock::now();
@@ -86,7 +98,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->report.postures_wanted = collector.postures;
   job->report.activate = request.activate;
   job->sensor = &sensor;
-  job->guess = request.guess_T_base_sensor ? request.guess_T_base_sensor : guess;
+  job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
   job->task = std::make_shared<CollectTask>(collector, [this] {
     const std::lock_guard lock(mutex_);

@@ -42,7 +42,8 @@ class CalibrationJobs {
                   JobSettings settings);
   ~CalibrationJobs();
 
-  /// `sensor` must outlive the jobs. `guess`: where the request holds none.
+  /// `sensor` must outlive the jobs. `guess`: where the request holds none; without either, at least two
+  /// postures are collected, and a request for one is refused.
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request, LiveSensor& sensor,
                                        const std::optional<Pose>& guess);
   Result<api::CalibrationReport> find(const std::string& id) const;
@@ -71,7 +72,7 @@ class CalibrationJobs {
            std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at);
   void end_overdue(const JobPointer& job);
   void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
-  bool store_end(api::CalibrationReport& report);
+  bool store_end(api::CalibrationReport& report, const std::string& basis);
   api::CalibrationReport report_of(const Job& job) const;
 
   CalibrationStore& store_;

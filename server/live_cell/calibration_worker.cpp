@@ -139,17 +139,17 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   report.finished = std::chrono::system_clock::now();
   report.progress = 1;
   report.postures_seen = job->task->seen();
-  if (store_end(report) && report.current) publish_(report, seen_at);
+  if (store_end(report, job->sensor->basis()) && report.current) publish_(report, seen_at);
   log_(report);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);
 }
 
 /// Stores the end, and that it is current now if it is to be. False: it could not be stored.
-bool CalibrationJobs::store_end(CalibrationReport& report) {
+bool CalibrationJobs::store_end(CalibrationReport& report, const std::string& basis) {
   auto stored = store_.finish(report);
   const bool activate = report.status == JobStatus::succeeded && report.activate;
-  if (stored && activate) stored = store_.activate(report);
+  if (stored && activate) stored = store_.activate(report, basis);
   report.current = stored && activate;
   if (!stored) report.message = "The result could not be stored: " + stored.error().message();
   return stored.has_value();

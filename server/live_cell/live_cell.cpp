@@ -3,6 +3,7 @@
 #include "server/live_cell/live_cell.hpp"
 
 #include "api/problem/api_error.hpp"
+#include "server/live_cell/pose_basis.hpp"
 #include "server/recording/record.hpp"
 
 namespace calibrd {
@@ -15,11 +16,14 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       store_(store),
       estimator_(std::move(estimator)),
       log_(std::move(log)),
-      robot_(model, std::move(mapping), settings_.gate, settings_.controller_frame),
+      robot_basis_(robot_basis(settings_.urdf, model, mapping)),
+      robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
       clouds_(virtual_cell, robot_),
       jobs_(
           store, estimator_.calibrate,
-          [this](const auto& calibration, auto seen_at) { publish(calibration, seen_at); },
+          [this](const auto& calibration, auto seen_at) {
+            publish(calibration, {seen_at, false, {}});
+          },
           log_.on_calibration, settings_.jobs) {}
 
 LiveCell::~LiveCell() {
@@ -33,14 +37,33 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   gate.latency = setup.latency;
   auto entry = std::make_unique<Entry>();
   entry->setup = setup;
-  entry->sensor =
-      std::make_unique<LiveSensor>(LiveSensorSettings{setup.id, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
-                                   estimator_.make_check(setup.camera), log_.on_pose);
+  const auto basis = robot_basis_ + camera_basis(setup.camera);
+  entry->sensor = std::make_unique<LiveSensor>(
+      LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
+      estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();
-  if (*stored) publish(**stored, std::nullopt);
+  if (*stored) restore(**stored, *entries_.at(setup.id)->sensor);
   return Done{};
+}
+
+/// A stored pose holds for what it was found with: with other intrinsics or another robot the same numbers
+/// may pass every check and still be wrong.
+void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& sensor) {
+  PoseOrigin origin;
+  origin.drifted = stored.drifted;
+  if (const auto changes = basis_changes(stored.basis, sensor.basis()); !changes.empty())
+    origin.objection = "the configuration has changed since the pose was found: " + changes +
+                       "; calibrate again, or activate the calibration to use its pose all the same";
+  publish(stored.calibration, origin);
+}
+
+void LiveCell::hear_of_pose(const api::PoseReport& pose) {
+  // Where this cannot be stored, the pose is drifted all the same, until a restart.
+  if (pose.state == api::PoseState::drifted && pose.known)
+    static_cast<void>(store_.add_drift(pose.known->calibration_id));
+  if (log_.on_pose) log_.on_pose(pose);
 }
 
 void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {
@@ -57,11 +80,11 @@ void LiveCell::request_stop() {
   jobs_.request_stop();
 }
 
-void LiveCell::publish(const api::CalibrationReport& calibration, std::optional<Clock::time_point> seen_at) {
+void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin) {
   const auto entry = entries_.find(calibration.sensor_id);
   if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
   entry->second->sensor->set_pose(
-      {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, seen_at);
+      {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin);
 }
 
 Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
@@ -71,7 +94,7 @@ Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
 }
 
 /// The last pose is a better start than the configured guess: sensors are knocked by less than guesses are
-/// wrong.
+/// wrong. Nothing: the calibration finds the start itself.
 std::optional<Pose> LiveCell::guess_for(const Entry& entry) const {
   const auto pose = entry.sensor->pose();
   return pose.known ? pose.known->result.T_base_sensor : entry.setup.guess_T_base_sensor;
@@ -128,14 +151,21 @@ Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view i
   if (found->status != api::JobStatus::succeeded) return fail(ApiError::not_activatable, found->id);
   const auto entry = find(found->sensor_id);
   if (!entry) return entry.error();
-  if (auto activated = store_.activate(*found); !activated)
+  if (auto activated = store_.activate(*found, (*entry)->sensor->basis()); !activated)
     return fail(ApiError::storage_failed, activated.error().message());
-  publish(*found, std::nullopt);
+  publish(*found, {});
   return jobs_.find(std::string(id));
 }
 
 Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const {
   if (const auto entry = find(query.sensor_id); !entry) return entry.error();
+  if (!query.before.empty()) {
+    const auto before = store_.find(query.before);
+    if (!before) return fail(ApiError::storage_failed, before.error().message());
+    if (!*before || (*before)->sensor_id != query.sensor_id)
+      return fail(ApiError::bad_query,
+                  "before: " + query.before + " is no calibration of " + query.sensor_id);
+  }
   auto page = store_.history(query);
   if (!page) return fail(ApiError::storage_failed, page.error().message());
   for (auto& calibration : page->calibrations)
@@ -200,9 +230,9 @@ Estimator core_estimator(const RobotModel& model, const VirtualCell& cell) {
     return calibrate(model, camera, views, settings);
   };
   estimator.make_check = [&cell](const CameraModel& camera) -> CheckFunction {
-    return [camera, own = std::make_shared<VirtualCell>(cell)](const View& view, const Pose& T_base_sensor,
-                                                               const DepthCorrection& correction) {
-      return check_pose(*own, camera, view, T_base_sensor, correction);
+    return [checker = std::make_shared<PoseChecker>(cell, camera)](
+               const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
+      return checker->check(view, T_base_sensor, correction);
     };
   };
   return estimator;

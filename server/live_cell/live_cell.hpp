@@ -29,7 +29,8 @@ struct LiveCellSettings {
   std::vector<std::filesystem::path> search_paths;
   std::string base_link;  ///< as configured; empty: the URDF's root
   std::string controller_frame;
-  ViewGateSettings gate;  ///< but for the latency, which is each sensor's
+  Clock::duration joint_latency{0};  ///< from the joints' moment to the arrival of their message
+  ViewGateSettings gate;             ///< but for the latency, which is each sensor's
   PoseWatchSettings watch;
   JobSettings jobs;
 };
@@ -90,7 +91,9 @@ class LiveCell : public api::CellService {
 
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry) const;
-  void publish(const api::CalibrationReport& calibration, std::optional<Clock::time_point> seen_at);
+  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin);
+  void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
+  void hear_of_pose(const api::PoseReport& pose);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -100,6 +103,7 @@ class LiveCell : public api::CellService {
   const Estimator estimator_;
   const CellLog log_;
   std::atomic<bool> is_stopping_{false};
+  const std::string robot_basis_;
   LiveRobot robot_;
   mutable CloudMaker clouds_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started

@@ -42,10 +42,11 @@ api::ControllerReport controller_report(const ControllerStatus& status, bool fre
 }  // namespace
 
 LiveRobot::LiveRobot(const RobotModel& model, JointMapping mapping, ViewGateSettings stillness,
-                     std::string controller_frame)
+                     Clock::duration latency, std::string controller_frame)
     : model_(model),
       mapping_(std::move(mapping)),
       stillness_(stillness),
+      latency_(latency),
       controller_frame_(std::move(controller_frame)),
       history_(2 * stillness.settle_time + std::chrono::seconds(2)) {
   health_.reason = "connecting for the first time";
@@ -78,7 +79,7 @@ void LiveRobot::take(const ControllerJoints& joints) {
   mapping_problem_ = positions ? std::string() : positions.error().message();
   if (!positions) return;
   history_.add({*std::move(positions), velocities ? *std::move(velocities) : std::vector<double>(),
-                joints.sequence, joints.stamp});
+                joints.sequence, joints.stamp - latency_});
 }
 
 std::optional<JointState> LiveRobot::newest_joints() const {

@@ -18,9 +18,10 @@ namespace calibrd {
 /// health. Safe to call from any thread.
 class LiveRobot {
  public:
-  /// `model` must outlive it. `stillness`: when the robot counts as still, and its joints as stale.
+  /// `model` must outlive it. `stillness`: when the robot counts as still, and its joints as stale. `latency`
+  /// is taken off the stamps of joints, which are those of their arrival.
   LiveRobot(const RobotModel& model, JointMapping mapping, ViewGateSettings stillness,
-            std::string controller_frame);
+            Clock::duration latency, std::string controller_frame);
 
   /// What the link is to be given; the robot must outlive the link.
   RobotLinkEvents events();
@@ -51,6 +52,7 @@ class LiveRobot {
   const RobotModel& model_;
   const JointMapping mapping_;
   const ViewGateSettings stillness_;
+  const Clock::duration latency_;
   const std::string controller_frame_;
 
   mutable std::mutex mutex_;  // guards what follows

@@ -51,7 +51,10 @@ void LiveSensor::join() {
 }
 
 void LiveSensor::start(std::unique_ptr<DepthSource> source) {
-  source_ = std::move(source);
+  {
+    const std::lock_guard lock(mutex_);  // others may be asking for the sensor already
+    source_ = std::move(source);
+  }
   thread_ = std::thread([this] { run(); });
 }
 
@@ -59,6 +62,7 @@ void LiveSensor::run() {
   auto* source = source_.get();
   while (!is_stopping_) {
     if (auto frame = source->next(pending_ ? kJointsPatience : kFramePatience)) take_up(*std::move(frame));
+    notice_loss(source->health());
     if (pending_) settle();
     tell_of_pose();
   }
@@ -110,7 +114,7 @@ void LiveSensor::finish(FrameDecision decision) {
   }
   const bool usable = decision.verdict == FrameVerdict::usable;
   serve_tasks(sighting->view, usable);
-  if (usable) check(sighting->view);
+  if (usable) check(*sighting);
 }
 
 void LiveSensor::serve_tasks(const View& view, bool usable) {
@@ -123,14 +127,24 @@ void LiveSensor::serve_tasks(const View& view, bool usable) {
   for (const auto& task : tasks) usable ? task->offer(view) : task->interrupt();
 }
 
-void LiveSensor::check(const View& view) {
+/// A sensor that was away, if only for a restart of its process, may have been moved.
+void LiveSensor::notice_loss(const SensorHealth& health) {
+  const bool away = health.state != SensorHealth::State::streaming;
+  if (!away && health.restarts == restarts_) return;
+  restarts_ = health.restarts;
+  const std::lock_guard lock(mutex_);
+  lost_at_ = Clock::now();
+  watch_.on_sensor_lost();
+}
+
+void LiveSensor::check(const Sighting& sighting) {
   std::unique_lock lock(mutex_);
-  if (!known_ || !watch_.is_check_due(Clock::now())) return;
+  if (!known_ || sighting.stamp <= lost_at_ || !watch_.is_check_due(Clock::now())) return;
   const auto number = pose_number_;
   const auto pose = *known_->result.T_base_sensor;
   const auto correction = known_->result.depth_correction;
   lock.unlock();
-  const auto checked = check_(view, pose, correction);
+  const auto checked = check_(sighting.view, pose, correction);
   lock.lock();
   if (number == pose_number_) watch_.on_check(checked, Clock::now());
 }
@@ -151,11 +165,19 @@ void LiveSensor::tell_of_pose() {
   if (on_pose_) on_pose_(pose());
 }
 
-void LiveSensor::set_pose(api::PoseReport::Known known, std::optional<Clock::time_point> seen_at) {
+void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin) {
   const std::lock_guard lock(mutex_);
   known_ = std::move(known);
   ++pose_number_;
-  seen_at ? watch_.set_fresh(*seen_at) : watch_.set_stored();
+  if (origin.drifted)
+    watch_.set_drifted();
+  else if (!origin.objection.empty())
+    watch_.set_withheld(origin.objection);
+  else if (origin.seen_at)
+    watch_.set_fresh(*origin.seen_at);
+  else
+    watch_.set_stored();
+  if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
 }
 
 void LiveSensor::feed(std::shared_ptr<CollectTask> task) {

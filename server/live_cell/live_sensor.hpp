@@ -23,8 +23,16 @@ namespace calibrd {
 /// Compares a view with what a pose predicts. Called on the sensor's thread only.
 using CheckFunction = std::function<PoseCheck(const View&, const Pose&, const DepthCorrection&)>;
 
+/// What speaks for a pose, or against it, when it takes over.
+struct PoseOrigin {
+  std::optional<Clock::time_point> seen_at;  ///< of the views it was just found from; nothing: a stored pose
+  bool drifted = false;                      ///< a stored one that had drifted
+  std::string objection;                     ///< why a stored one must not be used, whatever checks say
+};
+
 struct LiveSensorSettings {
   std::string id;
+  std::string basis;  ///< what poses are found with now: see CurrentCalibration
   CameraModel camera;
   ViewGateSettings gate;
   PoseWatchSettings watch;
@@ -58,9 +66,10 @@ class LiveSensor {
   /// Where its calibrations tell their predicted error.
   const std::vector<WorkspacePoint>& workspace() const { return settings_.workspace; }
 
-  /// The pose being served. `seen_at`: when the views were taken that it comes from; nothing for a stored
-  /// pose, which is unverified until a check agrees.
-  void set_pose(api::PoseReport::Known known, std::optional<Clock::time_point> seen_at);
+  const std::string& basis() const { return settings_.basis; }
+
+  /// The pose being served. A stored one is unverified until a check agrees.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
 
   /// Feeds the task with views until it is complete or cancelled.
   void feed(std::shared_ptr<CollectTask> task);
@@ -78,8 +87,9 @@ class LiveSensor {
   void settle();
   void finish(FrameDecision decision);
   void serve_tasks(const View& view, bool usable);
-  void check(const View& view);
+  void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
+  void notice_loss(const SensorHealth& health);
   void tell_of_pose();
   double frame_rate_hz(Clock::time_point now) const;
 
@@ -92,6 +102,7 @@ class LiveSensor {
   // The thread's own.
   ViewGate gate_;
   std::unique_ptr<Sighting> pending_;  // entered, its joints not all there
+  std::uint64_t restarts_ = 0;         // of the source, as far as noticed
 
   mutable std::mutex mutex_;  // guards what follows
   std::unique_ptr<DepthSource> source_;
@@ -101,6 +112,7 @@ class LiveSensor {
   std::array<std::uint64_t, kFrameVerdicts> counts_{};
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
+  Clock::time_point lost_at_;      // the last moment the source was away: frames before it prove nothing now
   std::uint64_t pose_number_ = 0;  // counts set_pose()
   struct Told {
     std::uint64_t pose_number = 0;

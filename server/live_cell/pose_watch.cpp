@@ -17,9 +17,25 @@ void PoseWatch::set_stored() {
   state_ = PoseState::unverified;
 }
 
+void PoseWatch::set_drifted() {
+  set_stored();
+  state_ = PoseState::drifted;
+}
+
+void PoseWatch::set_withheld(std::string objection) {
+  set_stored();
+  objection_ = std::move(objection);
+}
+
+void PoseWatch::on_sensor_lost() {
+  if (state_ != PoseState::calibrated) return;
+  state_ = PoseState::unverified;
+  doubt_ = Doubt::sensor_lost;
+}
+
 bool PoseWatch::is_check_due(Clock::time_point now) const {
   if (state_ == PoseState::uncalibrated) return false;
-  const bool settled = state_ != PoseState::unverified || !evidence_at_;
+  const bool settled = state_ != PoseState::unverified || doubt_ != Doubt::disagreement;
   return !checked_at_ || now - *checked_at_ >= (settled ? settings_.check_period : settings_.recheck_period);
 }
 
@@ -29,24 +45,38 @@ void PoseWatch::on_check(const PoseCheck& check, Clock::time_point now) {
   if (!check.enough_evidence) return;
   evidence_at_ = now;
   last_ = check;
-  check.agrees ? agree(now) : disagree();
+  if (!objection_.empty() || state_ == PoseState::drifted) return;
+  check.agrees ? agree(now) : disagree(now);
 }
 
 void PoseWatch::agree(Clock::time_point now) {
   disagreements_ = 0;
-  ++agreements_;
-  if (state_ == PoseState::drifted && agreements_ < settings_.agreements_to_recover) return;
   state_ = PoseState::calibrated;
   passed_at_ = now;
 }
 
-void PoseWatch::disagree() {
-  agreements_ = 0;
+void PoseWatch::disagree(Clock::time_point now) {
+  if (disagreements_ == 0) disagrees_since_ = now;
   ++disagreements_;
-  if (disagreements_ >= settings_.disagreements_to_drift)
-    state_ = PoseState::drifted;
-  else if (state_ == PoseState::calibrated)
-    state_ = PoseState::unverified;
+  const bool lasts = now - disagrees_since_ >= settings_.least_drift;
+  state_ = lasts && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
+                                                                       : PoseState::unverified;
+  doubt_ = Doubt::disagreement;
+}
+
+std::string PoseWatch::doubt() const {
+  if (!objection_.empty()) return objection_;
+  switch (doubt_) {
+    case Doubt::sensor_lost:
+      return "the sensor was lost and may have been moved; the pose is checked when the sensor is back and "
+             "the "
+             "robot holds still in view";
+    case Doubt::disagreement:
+      return "the last check disagreed with the pose; further checks follow at once";
+    case Doubt::restored:
+      break;
+  }
+  return "no check has passed since the pose was restored; it is checked when the robot holds still in view";
 }
 
 bool PoseWatch::is_valid(Clock::time_point now) const {
@@ -59,13 +89,10 @@ std::string PoseWatch::reason(Clock::time_point now) const {
     case PoseState::uncalibrated:
       return "this sensor has never been calibrated; start a calibration";
     case PoseState::unverified:
-      return evidence_at_ ? "the last check disagreed with the pose; further checks follow at once"
-                          : "no check has passed since the pose was restored; it is checked when the robot "
-                            "holds still "
-                            "in view";
+      return doubt();
     case PoseState::drifted:
-      return "the sensor does not see the robot where the pose says; if nothing stands before it, calibrate "
-             "again";
+      return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
+             "stood before it, activate the calibration again";
     case PoseState::calibrated:
       break;
   }

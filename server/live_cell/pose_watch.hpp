@@ -14,14 +14,16 @@ struct PoseWatchSettings {
   Clock::duration max_unverified = std::chrono::seconds(60);
   Clock::duration check_period = std::chrono::seconds(1);
   Clock::duration recheck_period = std::chrono::milliseconds(100);  ///< while a check has just disagreed
-  int disagreements_to_drift = 5;                                   ///< in a row
-  int agreements_to_recover = 3;                                    ///< in a row, after a drift
+  int disagreements_to_drift = 5;                                   ///< in a row, and
+  Clock::duration least_drift = std::chrono::seconds(3);            ///< ... over so long: nobody passing by
 };
 
 /// Decides what a sensor's pose is worth from the checks of it. Without I/O; not thread-safe.
 ///
-/// One check that disagrees is enough to serve the pose as valid no longer; only a row of them calls it
-/// drifted.
+/// One check that disagrees is enough to serve the pose as valid no longer, and one that agrees brings it
+/// back. Only a row of disagreements calls it drifted, and that stays: that a pose which is off agrees now
+/// and then, in one posture or another, does not make it true. Only another pose, or the same one set again,
+/// ends it.
 class PoseWatch {
  public:
   explicit PoseWatch(const PoseWatchSettings& settings) : settings_(settings) {}
@@ -30,6 +32,12 @@ class PoseWatch {
   void set_fresh(Clock::time_point seen_at);
   /// A stored pose: unverified until a check agrees.
   void set_stored();
+  /// A stored pose that had drifted.
+  void set_drifted();
+  /// A stored pose that no check can make valid, because it was found for something else: `objection`.
+  void set_withheld(std::string objection);
+  /// The sensor may have been moved while it was away: a valid pose is unverified until a check agrees.
+  void on_sensor_lost();
 
   bool is_check_due(Clock::time_point now) const;
   void on_check(const PoseCheck& check, Clock::time_point now);
@@ -45,11 +53,16 @@ class PoseWatch {
 
  private:
   void agree(Clock::time_point now);
-  void disagree();
+  std::string doubt() const;
+  void disagree(Clock::time_point now);
 
   PoseWatchSettings settings_;
   api::PoseState state_ = api::PoseState::uncalibrated;
-  int agreements_ = 0, disagreements_ = 0;  // in a row
+  enum class Doubt { restored, sensor_lost, disagreement };
+  Doubt doubt_ = Doubt::restored;  // why it is unverified
+  std::string objection_;
+  int disagreements_ = 0;  // in a row
+  Clock::time_point disagrees_since_;
   std::optional<Clock::time_point> checked_at_, passed_at_, evidence_at_;
   PoseCheck last_;
 };

@@ -26,6 +26,7 @@ void PostureCollector::offer(const View& view) {
   frames_.push_back(view);
   if (static_cast<int>(frames_.size()) < settings_.frames_per_posture) return;
   views_.push_back(average_views(frames_));
+  ++seen_;
   frames_.clear();
 }
 

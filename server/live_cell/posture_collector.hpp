@@ -24,11 +24,11 @@ class PostureCollector {
   void interrupt() { frames_.clear(); }
 
   bool is_complete() const { return seen() >= settings_.postures; }
-  int seen() const { return static_cast<int>(views_.size()); }
+  int seen() const { return seen_; }  ///< also once they are taken
   /// The last view offered was of a posture already seen.
   bool is_waiting_for_motion() const { return is_waiting_for_motion_; }
 
-  /// One view for each posture, averaged.
+  /// One view for each posture, averaged. A complete collector stays complete.
   std::vector<View> take_views() { return std::move(views_); }
 
  private:
@@ -37,6 +37,7 @@ class PostureCollector {
   CollectorSettings settings_;
   std::vector<View> views_;
   std::vector<View> frames_;  // of the posture being seen
+  int seen_ = 0;
   bool is_waiting_for_motion_ = false;
 };
 

@@ -69,9 +69,11 @@ Result<std::unique_ptr<CalibrationStore>> CalibrationStore::open(const std::file
   std::error_code failure;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failure);
   if (failure) return Error{StorageError::cannot_open, file.string() + " (" + failure.message() + ")"};
+  auto lock = StoreLock::take(file);
+  if (!lock) return lock.error();
   auto database = Database::open(file);
   if (!database) return database.error();
-  std::unique_ptr<CalibrationStore> store(new CalibrationStore(*std::move(database)));
+  std::unique_ptr<CalibrationStore> store(new CalibrationStore(*std::move(lock), *std::move(database)));
   for (auto step : {&CalibrationStore::prepare_schema, &CalibrationStore::end_interrupted})
     if (auto status = ((*store).*step)(); !status)
       return Error{status.error().code, file.string() + " (" + status.error().detail + ")"};
@@ -85,11 +87,15 @@ Status CalibrationStore::prepare_schema() {
     if (query.next()) version = query.number(0);
     if (auto status = query.status(StorageError::not_a_store); !status) return status;
   }
-  if (version == kSchemaVersion) return Done{};
-  if (version > kSchemaVersion) return Error{StorageError::newer_schema, "schema " + std::to_string(version)};
-  return database_.run("BEGIN IMMEDIATE;" + std::string(kSchema) +
-                           "PRAGMA user_version = " + std::to_string(kSchemaVersion) + "; COMMIT;",
-                       StorageError::not_a_store);
+  const auto newest = static_cast<std::int64_t>(kSchemaSteps.size());
+  if (version == newest) return Done{};
+  if (version > newest || version < 0)
+    return Error{StorageError::newer_schema, "schema " + std::to_string(version)};
+  std::string steps;
+  for (auto step = version; step < newest; ++step) steps += kSchemaSteps[static_cast<std::size_t>(step)];
+  return database_.run(
+      "BEGIN IMMEDIATE;" + steps + "PRAGMA user_version = " + std::to_string(newest) + "; COMMIT;",
+      StorageError::not_a_store);
 }
 
 Status CalibrationStore::end_interrupted() {
@@ -130,14 +136,24 @@ Status CalibrationStore::finish(const CalibrationReport& calibration) {
   return insert.status(StorageError::cannot_write);
 }
 
-Status CalibrationStore::activate(const CalibrationReport& calibration) {
+Status CalibrationStore::activate(const CalibrationReport& calibration, const std::string& basis) {
   const std::lock_guard lock(mutex_);
-  Statement insert(database_,
-                   "INSERT INTO activations (sensor_id, calibration_id, activated_ms) VALUES (?, ?, ?)");
-  insert.bind(calibration.sensor_id)
-      .bind(calibration.id)
-      .bind(ms_of(std::chrono::system_clock::now()))
-      .next();
+  Statement insert(
+      database_,
+      "INSERT INTO activations (sensor_id, calibration_id, activated_ms, basis) VALUES (?, ?, ?, ?)");
+  insert.bind(calibration.sensor_id).bind(calibration.id).bind(ms_of(std::chrono::system_clock::now()));
+  insert.bind(basis).next();
+  return insert.status(StorageError::cannot_write);
+}
+
+Status CalibrationStore::add_drift(const std::string& calibration_id) {
+  const std::lock_guard lock(mutex_);
+  Statement insert(
+      database_,
+      "INSERT OR IGNORE INTO drifts (activation, found_ms) SELECT a.number, ? FROM activations a "
+      "WHERE a.calibration_id = ? AND a.number = "
+      "(SELECT MAX(b.number) FROM activations b WHERE b.sensor_id = a.sensor_id)");
+  insert.bind(ms_of(std::chrono::system_clock::now())).bind(calibration_id).next();
   return insert.status(StorageError::cannot_write);
 }
 
@@ -160,11 +176,28 @@ Result<std::optional<CalibrationReport>> CalibrationStore::find(const std::strin
   return find_where("WHERE c.id = ?", id);
 }
 
-Result<std::optional<CalibrationReport>> CalibrationStore::current(const std::string& sensor_id) {
-  return find_where(
-      "WHERE c.id = (SELECT calibration_id FROM activations WHERE sensor_id = ? ORDER BY number DESC LIMIT "
-      "1)",
-      sensor_id);
+Result<std::optional<CurrentCalibration>> CalibrationStore::current(const std::string& sensor_id) {
+  CurrentCalibration current;
+  {
+    const std::lock_guard lock(mutex_);
+    Statement query(
+        database_,
+        "SELECT calibration_id, basis, number IN (SELECT activation FROM drifts) FROM activations "
+        "WHERE sensor_id = ? ORDER BY number DESC LIMIT 1");
+    query.bind(sensor_id);
+    if (query.next()) {
+      current.calibration.id = query.text(0);
+      current.basis = query.text(1);
+      current.drifted = query.number(2) != 0;
+    }
+    if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+  }
+  if (current.calibration.id.empty()) return std::optional<CurrentCalibration>();
+  auto report = find(current.calibration.id);
+  if (!report) return report.error();
+  if (!*report) return std::optional<CurrentCalibration>();
+  current.calibration = **std::move(report);
+  return std::optional(std::move(current));
 }
 
 Result<api::HistoryPage> CalibrationStore::history(const api::HistoryQuery& query) {

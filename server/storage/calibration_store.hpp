@@ -10,6 +10,7 @@
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
 #include "server/storage/sqlite.hpp"
+#include "server/storage/store_lock.hpp"
 
 namespace calibrd {
 
@@ -19,13 +20,20 @@ struct KeyedStart {
   std::string fingerprint;
 };
 
+/// The calibration whose pose a sensor has.
+struct CurrentCalibration {
+  api::CalibrationReport calibration;
+  std::string basis;  ///< what its pose was found with, as stated when it was activated
+  bool drifted = false;
+};
+
 /// Every calibration ever made, in an SQLite file. Rows are only ever added: the schema refuses to change or
 /// delete one. A call that returns Done has reached the disk. Safe to call from any thread; calls wait for
 /// each other and for the disk. Errors: StorageError.
 class CalibrationStore {
  public:
-  /// Opens or makes the store; its folder is made when absent. Calibrations that had not ended when the last
-  /// daemon did are recorded as failed.
+  /// Opens or makes the store; its folder is made when absent. It belongs to this process until it is closed.
+  /// Calibrations that had not ended when the last daemon did are recorded as failed.
   static Result<std::unique_ptr<CalibrationStore>> open(const std::filesystem::path& file);
 
   /// Records that a calibration was asked for.
@@ -34,22 +42,28 @@ class CalibrationStore {
   /// Records how it ended; once for each calibration.
   Status finish(const api::CalibrationReport& calibration);
 
-  /// Makes a stored calibration the current one of its sensor.
-  Status activate(const api::CalibrationReport& calibration);
+  /// Makes a stored calibration the current one of its sensor. `basis`: see CurrentCalibration.
+  Status activate(const api::CalibrationReport& calibration, const std::string& basis);
+
+  /// Records that the calibration's pose has drifted, if it is its sensor's current one. It has until it is
+  /// activated again.
+  Status add_drift(const std::string& calibration_id);
 
   Result<std::optional<api::CalibrationReport>> find(const std::string& id);
-  Result<std::optional<api::CalibrationReport>> current(const std::string& sensor_id);
+  Result<std::optional<CurrentCalibration>> current(const std::string& sensor_id);
   Result<api::HistoryPage> history(const api::HistoryQuery& query);
   Result<std::optional<KeyedStart>> find_start(const std::string& sensor_id,
                                                const std::string& idempotency_key);
 
  private:
-  explicit CalibrationStore(Database database) : database_(std::move(database)) {}
+  CalibrationStore(StoreLock lock, Database database)
+      : lock_(std::move(lock)), database_(std::move(database)) {}
   Status prepare_schema();
   Status end_interrupted();
   Result<std::optional<api::CalibrationReport>> find_where(const std::string& condition,
                                                            const std::string& value);
 
+  const StoreLock lock_;
   std::mutex mutex_;
   Database database_;  // guarded by mutex_
 };

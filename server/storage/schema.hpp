@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 
 namespace calibrd {
 
-/// Kept in the file's user_version. Raise it with every change, and bring older files up to date in
-/// prepare_schema().
-inline constexpr int kSchemaVersion = 1;
-
-inline constexpr const char* kSchema = R"sql(
+inline constexpr const char* kFirstSchema = R"sql(
 CREATE TABLE calibrations (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
   id TEXT NOT NULL UNIQUE,
@@ -47,5 +44,20 @@ CREATE TRIGGER results_remain BEFORE DELETE ON results BEGIN SELECT RAISE(ABORT,
 CREATE TRIGGER activations_stay BEFORE UPDATE ON activations BEGIN SELECT RAISE(ABORT, 'activations are kept'); END;
 CREATE TRIGGER activations_remain BEFORE DELETE ON activations BEGIN SELECT RAISE(ABORT, 'activations are kept'); END;
 )sql";
+
+/// What an activated pose was found with, and which activations have drifted since.
+inline constexpr const char* kPoseBasisAndDrift = R"sql(
+ALTER TABLE activations ADD COLUMN basis TEXT NOT NULL DEFAULT '';
+CREATE TABLE drifts (
+  activation INTEGER PRIMARY KEY REFERENCES activations (number),
+  found_ms INTEGER NOT NULL
+);
+CREATE TRIGGER drifts_stay BEFORE UPDATE ON drifts BEGIN SELECT RAISE(ABORT, 'drifts are kept'); END;
+CREATE TRIGGER drifts_remain BEFORE DELETE ON drifts BEGIN SELECT RAISE(ABORT, 'drifts are kept'); END;
+)sql";
+
+/// Steps from an empty file to today's schema. The file's user_version is how many it has taken; a change is
+/// one more step, and the steps before it stay as they are.
+inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift};
 
 }  // namespace calibrd

@@ -11,6 +11,9 @@ const char* text(StorageError code) {
   switch (code) {
     case StorageError::cannot_open:
       return "the calibration store cannot be opened; set storage.path to a place this user may write to";
+    case StorageError::in_use:
+      return "another calibrd is running on this calibration store; end that one, or set another "
+             "storage.path for this one";
     case StorageError::not_a_store:
       return "not a calibration store, or a damaged one; move the file away and restore a backup, or start "
              "with none";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/calibration/calibrate.hpp"
+#include "core/calibration/track.hpp"
 #include "core/capture/capture.hpp"
 #include "core/robot/robot_model.hpp"
 
@@ -68,6 +69,25 @@ struct RenderOptions {
 };
 int run_render(const RenderOptions& options);
 
+struct RegisterOptions {
+  std::filesystem::path source, target;
+  int runs = 50;
+  int threads = 2;
+};
+int run_register(const RegisterOptions& options);
+
+struct TrackOptions {
+  std::filesystem::path capture_dir;
+  Paths models;
+  int runs = 20;
+  double offset_mm = 2, offset_deg = 0.2;
+  std::uint64_t seed = 1;
+  int stride = TrackSettings{}.stride;
+  int steps = TrackSettings{}.steps;
+  int threads = 2;
+};
+int run_track(const TrackOptions& options);
+
 struct ScenesOptions {
   Paths urdfs;  ///< the scenes take them in turn
   Paths models;
@@ -80,6 +100,6 @@ struct ScenesOptions {
   bool bound = false;
   unsigned jobs = 1;
 };
-int run_scenes(const ScenesOptions& options);
+int run_scenes(ScenesOptions options);
 
 }  // namespace calibrd::bench

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -169,7 +170,11 @@ class OrderedOutput {
 
 }  // namespace
 
-int run_scenes(const ScenesOptions& options) {
+int run_scenes(ScenesOptions options) {
+  // A count given twice would count its scenes twice.
+  std::ranges::sort(options.postures, std::greater());
+  const auto repeated = std::ranges::unique(options.postures);
+  options.postures.erase(repeated.begin(), repeated.end());
   std::vector<SceneRobot> robots;
   for (const auto& urdf : options.urdfs) {
     auto robot = read_scene_robot(urdf, options.models);

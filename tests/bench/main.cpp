@@ -64,6 +64,30 @@ CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   return command;
 }
 
+CLI::App* add_register(CLI::App& app, RegisterOptions& clouds) {
+  CLI::App* command = app.add_subcommand("register", "register two PLY clouds, starting as they lie");
+  command->add_option("--source", clouds.source)->required();
+  command->add_option("--target", clouds.target)->required();
+  command->add_option("--runs", clouds.runs)->check(CLI::PositiveNumber);
+  command->add_option("--threads", clouds.threads)->check(CLI::PositiveNumber);
+  return command;
+}
+
+CLI::App* add_track(CLI::App& app, TrackOptions& track) {
+  CLI::App* command =
+      app.add_subcommand("track", "update a pose that is off by a little by one frame, for every view");
+  command->add_option("CAPTURE_DIR", track.capture_dir)->required();
+  command->add_option("--models", track.models, "folders to look robot models up in");
+  command->add_option("--runs", track.runs, "starts per view")->check(CLI::PositiveNumber);
+  command->add_option("--offset-mm", track.offset_mm);
+  command->add_option("--offset-deg", track.offset_deg);
+  command->add_option("--seed", track.seed);
+  command->add_option("--stride", track.stride)->check(CLI::PositiveNumber);
+  command->add_option("--steps", track.steps)->check(CLI::PositiveNumber);
+  command->add_option("--threads", track.threads)->check(CLI::PositiveNumber);
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,11 +97,17 @@ int main(int argc, char** argv) {
   GlobalOptions global;
   RenderOptions render;
   ScenesOptions scenes;
+  RegisterOptions clouds;
+  TrackOptions track;
   const CLI::App* fine_command = add_fine(app, fine);
   const CLI::App* global_command = add_global(app, global);
   add_render(app, render);
   const CLI::App* scenes_command = add_scenes(app, scenes);
+  const CLI::App* register_command = add_register(app, clouds);
+  const CLI::App* track_command = add_track(app, track);
   CLI11_PARSE(app, argc, argv);
+  if (register_command->parsed()) return run_register(clouds);
+  if (track_command->parsed()) return run_track(track);
   if (global_command->parsed()) return run_global(global);
   if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {
     std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest
+from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest, call
 
 
 class BadInput(CellTest):
@@ -40,6 +40,12 @@ class BadInput(CellTest):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
             self.expect_refused(self.run_daemon(f"server.port={port}"), str(port))
+
+    def test_output_that_cannot_be_written(self):
+        for redirection in (">/dev/full", ">&-"):
+            ended = subprocess.run(["sh", "-c", f'exec "$0" config-reference {redirection}', BIN / "calibrd"],
+                                   stderr=subprocess.PIPE, text=True, timeout=20, check=False)
+            self.expect_refused(ended, "stdout")
 
     def test_a_mistyped_key_is_named_with_its_line_and_the_nearest_name(self):
         config = self.folder / "typo.toml"
@@ -93,6 +99,15 @@ class BadInput(CellTest):
     def test_a_file_that_is_no_database(self):
         (self.folder / "text.db").write_text("this is no database, but a text of more than a hundred bytes " * 4)
         self.expect_refused(self.run_daemon(f"storage.path={self.folder / 'text.db'}"), "text.db")
+
+    def test_a_store_that_another_daemon_uses(self):
+        simulator = self.simulate()
+        first = self.serve(simulator).wait_ready()
+        job = first.start_calibration(postures=50)
+        self.expect_refused(self.run_daemon(), "calibrd.db", "another calibrd", "storage.path")
+        self.assertEqual(first.json(job)["status"], "collecting")
+        call(first.port, "DELETE", job)
+        self.assertEqual(first.json(job)["status"], "cancelled", "its end could not be stored")
 
 
 if __name__ == "__main__":

@@ -49,6 +49,11 @@ class Recording(CellTest):
         return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--guess", self.guess, *options],
                               capture_output=True, text=True, timeout=120, check=False)
 
+    def calibrate_into(self, redirection: str):
+        command = f'exec "$0" calibrate "$1" --guess "$2" {redirection}'
+        return subprocess.run(["sh", "-c", command, BIN / "calibrd", self.capture, self.guess], stderr=subprocess.PIPE,
+                              text=True, timeout=120, check=False)
+
     def expect_refused(self, *words: str):
         ended = self.calibrate()
         print(ended.stderr.strip())
@@ -73,6 +78,11 @@ class Recording(CellTest):
             print(f"{result['verdict']}, {result['views']} views, off by {mm:.3f} mm, {mrad:.3f} mrad")
             self.assertEqual((result["verdict"], result["views"]), ("accepted", POSTURES))
             self.assertLess(max(mm, mrad), 3)
+        with self.subTest("output that cannot be written"):
+            for redirection in (">/dev/full", ">&-"):
+                ended = self.calibrate_into(redirection)
+                self.assertEqual(ended.returncode, 2, redirection)
+                self.assertIn("stdout", ended.stderr, redirection)
         spoilt = {
             "no frame": (lambda c: c.update(frames=[]), "no frame"),
             "unknown format": (lambda c: c.update(format="capture/9"), "capture/1"),

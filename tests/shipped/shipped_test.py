@@ -9,7 +9,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from boost_symbols import displaced_by, sort_objects, symbols_of, weak_boost_symbols
+from boost_symbols import check, displaced_by, sort_objects, symbols_of, weak_boost_symbols
+from boost_bindings import crossings
 from linked_libraries import complaints, shipped_binaries
 
 DEPS = """a.o: #deps 2, deps mtime 1 (VALID)
@@ -26,9 +27,13 @@ c.o: #deps 2, deps mtime 1 (VALID)
 
 d.o: #deps 1, deps mtime 1 (VALID)
     ../d.cpp
+
+e.o: #deps 1, deps mtime 1 (VALID)
+    ../../usr/include/boost/config.hpp
 """
 
-
+DEPS_OF_TWO = ("theirs.o: #deps 1\\n    /usr/include/boost/version.hpp\\n\\n"
+               "ours.o: #deps 1\\n    /src/.deps/boost/usr/include/boost/version.hpp\\n\\n")
 VERSION = "_ZN5boost7versionEv"
 
 
@@ -64,8 +69,8 @@ class LinkedLibraries(unittest.TestCase):
 
 class BoostSymbols(unittest.TestCase):
     def test_sorts_objects_by_the_boost_they_saw(self):
-        use = sort_objects(DEPS)
-        self.assertEqual((use.system, use.private, use.both), (["a.o"], ["b.o"], ["c.o"]))
+        use = sort_objects(DEPS, Path("/src/build"))
+        self.assertEqual((use.system, use.private, use.both), (["a.o", "e.o"], ["b.o"], ["c.o"]))
 
     def test_reads_weak_symbols_of_boost_alone(self):
         nm = "00 W _ZN5boost1fEv\n00 V _ZTIN5boost1AE\n00 u _ZN5boost1gE\n00 T _ZN5boost1hEv\n00 W _ZN3stdv\n"
@@ -90,6 +95,51 @@ class BoostSymbols(unittest.TestCase):
             gcc(folder, *link, "-o", "closed", "-Wl,--exclude-libs,ALL")
             self.assertEqual(displaced_by(Path(folder, "open")), {VERSION})
             self.assertEqual(displaced_by(Path(folder, "closed")), set())
+
+    def test_finds_a_program_that_puts_its_boost_in_the_place_of_a_module_s(self):
+        with tempfile.TemporaryDirectory() as folder:
+            compile_boost_user(folder, "theirs", 74)
+            compile_boost_user(folder, "ours", 81)
+            Path(folder, "module.cpp").write_text("int theirs(); int module() { return theirs(); }")
+            Path(folder, "main.cpp").write_text("int ours(); int main() { return ours(); }")
+            gcc(folder, "-shared", "theirs.o", "-o", "libtheirs.so")
+            gcc(folder, "-shared", "module.cpp", "-L.", "-ltheirs", f"-Wl,-rpath,{folder}", "-o", "module.so")
+            gcc(folder, "main.cpp", "ours.o", "-rdynamic", "-o", "open")
+            gcc(folder, "main.cpp", "ours.o", "-o", "closed")
+            for program, found in (("open", {VERSION}), ("closed", set())):
+                self.assertEqual(displaced_by(Path(folder, program), [Path(folder, "module.so")]), found)
+
+    def test_a_module_is_linked_apart_and_exports_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build = Path(folder)
+            Path(folder, "lib/calibrd").mkdir(parents=True)
+            for name, version in (("theirs", 74), ("ours", 81)):
+                compile_boost_user(folder, name, version)
+            Path(folder, "exports.map").write_text("{ global: *theirs*; local: *; };")
+            script = Path(folder, "ninja")  # what it would say of such a build
+            script.write_text(f"""#!/bin/sh
+case $2 in
+deps) printf '{DEPS_OF_TWO}' ;;
+query) printf '%s:\\n  input: LINK\\n    theirs.o\\n' "$3" ;;
+esac
+""")
+            script.chmod(0o755)
+            gcc(folder, "-shared", "theirs.o", "-Wl,--version-script=exports.map", "-o", "lib/calibrd/module.so")
+            self.assertEqual(check(build, str(script))[0], [])
+            gcc(folder, "-shared", "theirs.o", "-o", "lib/calibrd/module.so")
+            self.assertEqual(check(build, str(script))[0], ["module.so exports: boost::version()"])
+            Path(folder, "lib/calibrd/module.so").unlink()
+            self.assertEqual(check(build, str(script))[0], ["weak on both sides: boost::version()"])
+
+
+class BoostBindings(unittest.TestCase):
+    def test_finds_symbols_of_boost_bound_between_a_module_s_libraries_and_the_rest(self):
+        line = "  7: binding file {} [0] to {} [0]: normal symbol `{}' [V1]\n"
+        pcl, calibrd, libc = "/usr/lib/libpcl_common.so.1.13", "build/bin/calibrd", "/lib/libc.so.6"
+        log = "".join((line.format(pcl, pcl, VERSION), line.format(pcl, libc, "memcpy"), line.format(calibrd, libc, "open")))
+        self.assertEqual(crossings(log), [])
+        for pair in ((pcl, calibrd), (calibrd, pcl)):
+            self.assertEqual(len(crossings(log + line.format(*pair, VERSION))), 1)
 
 
 if __name__ == "__main__":

@@ -40,9 +40,10 @@ CalibrationResult accepted_result() {
 
 TEST(CalibrationResultJson, HoldsEveryKeyOfTheContract) {
   const auto object = json::parse(calibration_result_json(accepted_result(), 12.0)).as_object();
-  for (const auto* key : {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
-                          "depth_correction", "joint_zeros", "residual_rms_m", "coverage", "links",
-                          "held_out_residual_m", "runner_up_margin", "weak_directions", "workspace", "views", "used_guess", "reasons", "time_ms"})
+  for (const auto* key :
+       {"verdict", "T_base_sensor", "covariance", "sigma_position_m", "sigma_rotation_rad",
+        "depth_correction", "joint_zeros", "residual_rms_m", "coverage", "links", "held_out_residual_m",
+        "runner_up_margin", "weak_directions", "workspace", "views", "used_guess", "reasons", "time_ms"})
     EXPECT_TRUE(object.contains(key)) << key;
   EXPECT_EQ(object.at("verdict"), "accepted");
   EXPECT_EQ(object.at("T_base_sensor").as_array().size(), 4U);

@@ -66,6 +66,11 @@ TEST_F(CalibrationRoutes, BadBodiesAreRefusedBeforeAnythingStarts) {
   refused(R"({"activate": "yes"})", "bad_value");
   refused(R"({"guess": [1, 2]})", "bad_value");
   refused(R"({"guess": "1,2,3"})", "bad_value");
+  refused(R"({"guess": [1370, 730, 860, 0, 0, 0, 1]})", "bad_value");
+}
+
+TEST_F(CalibrationRoutes, QuaternionOfAGuessMayHaveAnyLength) {
+  EXPECT_EQ(ask("POST", kStart, R"({"guess": [1, 2, 3, 0, 0, 0.7, 0.7]})").status, 202);
 }
 
 TEST_F(CalibrationRoutes, BodyThatIsNotCalledJsonIs415) {
@@ -102,6 +107,17 @@ TEST_F(CalibrationRoutes, DeleteCancelsAndActivateActivates) {
   EXPECT_EQ(cell_.cancelled, "c1");
   EXPECT_EQ(ask("POST", "/api/v1/calibrations/c1/activate").status, 200);
   EXPECT_EQ(cell_.activated, "c1");
+}
+
+TEST_F(CalibrationRoutes, UnknownParametersAreRefusedEverywhere) {
+  for (const auto* path : {"/livez", "/readyz", "/api/v1/calibrations/c1", kStart}) {
+    EXPECT_EQ(get(std::string(path) + "?bogus").status, 400) << path;
+    EXPECT_EQ(code(), "bad_query") << path;
+  }
+  EXPECT_EQ(ask("DELETE", "/api/v1/calibrations/c1?bogus").status, 400);
+  EXPECT_EQ(cell_.cancelled, "");
+  EXPECT_EQ(ask("POST", "/api/v1/calibrations/c1/activate?bogus").status, 400);
+  EXPECT_EQ(cell_.activated, "");
 }
 
 TEST_F(CalibrationRoutes, HistoryIsPaged) {

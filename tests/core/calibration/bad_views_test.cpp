@@ -75,7 +75,7 @@ TEST(CalibrateFrom, RobotOutOfViewIsNotAccepted) {
   SceneSettings scene;
   scene.clutter = true;
   Pose elsewhere = true_T_base_sensor();
-  elsewhere.linear() = elsewhere.linear() * exp_so3({0, 0.7, 0});  // the robot is left of the picture
+  elsewhere.linear() = elsewhere.linear() * exp_so3({0, 1.0, 0});  // the robot is left of the picture
   std::vector<View> views;
   for (const auto& joints : postures(2)) views.push_back(render_view(joints, elsewhere, scene));
   for (const Pose& guess : {elsewhere, true_T_base_sensor()}) {

@@ -44,7 +44,9 @@ inline std::string described(const CalibrationResult& result) {
     text += ", off by " + std::to_string(1e3 * error.tail<3>().norm()) + " mm and " +
             std::to_string(1e3 * error.head<3>().norm()) + " mrad, claims " +
             std::to_string(1e3 * result.sigma_position_m) + " mm and " +
-            std::to_string(1e3 * result.sigma_rotation_rad) + " mrad";
+            std::to_string(1e3 * result.sigma_rotation_rad) + " mrad, coverage " +
+            std::to_string(result.coverage) + ", zeros";
+    for (const JointZero& zero : result.joint_zeros) text += " " + std::to_string(1e3 * zero.zero);
   }
   return text;
 }

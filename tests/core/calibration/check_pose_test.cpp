@@ -12,7 +12,7 @@ using namespace test;
 PoseCheck checked(const Pose& T_base_sensor, const SceneSettings& scene,
                   const DepthCorrection& correction = {}) {
   VirtualCell cell(test_arm());
-  return check_pose(cell, scene.camera, render_views(1, scene)[0], T_base_sensor, correction);
+  return PoseChecker(cell, scene.camera).check(render_views(1, scene)[0], T_base_sensor, correction);
 }
 
 SceneSettings cluttered() {
@@ -32,7 +32,7 @@ TEST(CheckPose, AgreesOnTheTruth) {
 TEST(CheckPose, MovesTheCellToTheViewsJoints) {
   VirtualCell cell(test_arm());
   cell.set_joints(postures(2)[1]);
-  EXPECT_TRUE(check_pose(cell, ideal_kinect2(), render_views(1)[0], true_T_base_sensor(), {}).agrees);
+  EXPECT_TRUE(PoseChecker(cell, ideal_kinect2()).check(render_views(1)[0], true_T_base_sensor(), {}).agrees);
 }
 
 TEST(CheckPose, DisagreesFourCentimetresAlongTheLineOfSight) {
@@ -52,6 +52,46 @@ TEST(CheckPose, DisagreesWhenTheSensorIsTurnedByFourDegrees) {
     const PoseCheck check = checked(turned, cluttered());
     EXPECT_TRUE(check.enough_evidence);
     EXPECT_FALSE(check.agrees) << check.agreement;
+  }
+}
+
+TEST(CheckPose, DisagreesFiveMillimetresAwayInAnyDirection) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double by_m : {0.005, -0.005}) {
+      Pose moved = true_T_base_sensor();
+      moved.translation()[axis] += by_m;
+      const PoseCheck check = checked(moved, cluttered());
+      EXPECT_TRUE(check.enough_evidence);
+      EXPECT_FALSE(check.agrees) << check.shift_sigmas;
+      EXPECT_NEAR(check.shift_m, 0.005, 0.001);
+    }
+  }
+}
+
+TEST(CheckPose, DisagreesTurnedByTenMilliradians) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    turn[axis] = 0.01;
+    Pose turned = true_T_base_sensor();
+    turned.linear() = turned.linear() * exp_so3(turn);
+    const PoseCheck check = checked(turned, cluttered());
+    EXPECT_FALSE(check.agrees) << check.shift_sigmas;
+    EXPECT_NEAR(check.turn_rad, 0.01, 0.003);
+  }
+}
+
+TEST(CheckPose, SomebodyInFrontOfTheRobotIsNoDisagreement) {
+  View view = render_views(1)[0];
+  VirtualCell cell(test_arm());
+  PoseChecker checker(cell, ideal_kinect2());
+  for (const bool all : {false, true}) {
+    for (int y = 0; y < view.depth.height; ++y)
+      for (int x = 0; x < (all ? view.depth.width : view.depth.width / 2); ++x)
+        view.depth.raw[view.depth.index(x, y)] = 600;
+    const PoseCheck check = checker.check(view, true_T_base_sensor(), {});
+    EXPECT_GT(check.hidden_pixels, 200U);
+    EXPECT_EQ(check.enough_evidence, !all);
+    EXPECT_EQ(check.agrees, !all) << check.agreement << " " << check.shift_sigmas;
   }
 }
 
@@ -79,7 +119,7 @@ TEST(CheckPose, SaysNothingOfAnEmptyFrame) {
   View view = render_views(1)[0];
   std::ranges::fill(view.depth.raw, std::uint16_t{0});
   VirtualCell cell(test_arm());
-  EXPECT_FALSE(check_pose(cell, ideal_kinect2(), view, true_T_base_sensor(), {}).enough_evidence);
+  EXPECT_FALSE(PoseChecker(cell, ideal_kinect2()).check(view, true_T_base_sensor(), {}).enough_evidence);
 }
 
 TEST(CheckPose, SaysNothingOfAHandfulOfPixels) {
@@ -88,7 +128,7 @@ TEST(CheckPose, SaysNothingOfAHandfulOfPixels) {
                     std::uint16_t{0});  // the foot is left
   std::ranges::fill(view.depth.raw.end() - 150 * 512, view.depth.raw.end(), std::uint16_t{0});
   VirtualCell cell(test_arm());
-  const PoseCheck check = check_pose(cell, ideal_kinect2(), view, true_T_base_sensor(), {});
+  const PoseCheck check = PoseChecker(cell, ideal_kinect2()).check(view, true_T_base_sensor(), {});
   EXPECT_GT(check.robot_pixels, 0U);
   EXPECT_FALSE(check.enough_evidence);
   EXPECT_FALSE(check.agrees);

@@ -51,7 +51,8 @@ RegistrationView view_with_one_step(const Board& board, int place, double step_a
                         JointAxes(board.robot, board.cell.link_poses()),
                         std::vector<float>(pixels, 0.0F),
                         std::vector<float>(pixels, 100.0F),
-                        1.0};
+                        1.0,
+                        std::make_shared<const PixelRays>(camera)};
   const int length = board.crossed_along_x ? camera.width : camera.height;
   for (int t = 0; t < length; ++t) {
     const int x = board.crossed_along_x ? t : place, y = board.crossed_along_x ? place : t;
@@ -78,9 +79,9 @@ TEST_P(ContourJacobian, EqualsTheSlopeOfTheRenderedOutline) {
                           T_base_sensor, settings, equations, tally);
     ASSERT_EQ(tally.found, 1U) << "of " << tally.predicted;
     const ParameterMatrix information = equations.information().selfadjointView<Eigen::Lower>();
-    const double weight = information(kContourShift, kContourShift);  // w J Jᵀ, where J is 1 for the shift
-    const ParameterVector jacobian = information.col(kContourShift) / weight;
-    EXPECT_NEAR(equations.gradient()[kContourShift] / weight, kEdgeOutside_px, 0.25);  // outward is positive
+    const double weight = information(kImageShift, kImageShift);  // w J Jᵀ, where J is 1 for the shift
+    const ParameterVector jacobian = information.col(kImageShift) / weight;
+    EXPECT_NEAR(equations.gradient()[kImageShift] / weight, kEdgeOutside_px, 0.25);  // outward is positive
 
     constexpr double kStep = 1e-3;
     Vector6d slope;

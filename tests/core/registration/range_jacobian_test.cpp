@@ -28,7 +28,8 @@ std::optional<OnePixel> observe(const VirtualCell& cell, const CameraModel& came
                         JointAxes(cell.robot(), cell.link_poses()),
                         std::vector<float>(prediction.depth_m.size(), 0.0F),
                         {},
-                        0};
+                        0,
+                        std::make_shared<const PixelRays>(camera)};
   view.depth_m[i] = static_cast<float>(correction.measured(prediction.depth_m[i]) + kMeasuredBeyond_m);
   NormalEquations equations;
   RangeTally tally;

@@ -76,5 +76,12 @@ TEST_F(MeshPath, MissingMeshNamesReferenceUrdfAndFolders) {
     EXPECT_NE(file.error().detail.find(culprit), std::string::npos) << file.error().message();
 }
 
+TEST_F(MeshPath, FolderThatIsGivenTwiceIsNamedOnce) {
+  const auto folder = urdf_.parent_path();
+  const std::vector<fs::path> search_paths{folder, folder / "../urdf"};
+  const auto detail = find_mesh("none.stl", urdf_, search_paths).error().detail;
+  EXPECT_NE(detail.find("(looked in " + folder.string() + ")"), std::string::npos) << detail;
+}
+
 }  // namespace
 }  // namespace calibrd

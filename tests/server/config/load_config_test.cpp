@@ -180,6 +180,11 @@ TEST_F(LoadConfig, WorkspacePointNeedsThreeNumbers) {
   EXPECT_NE(text.find("sensors.k.workspace.tray"), std::string::npos) << text;
 }
 
+TEST_F(LoadConfig, GuessInMillimetresIsRefused) {
+  const auto text = failure(std::string(kSmallest) + "[sensors.k]\nguess = [1370, 730, 860, 0, 0, 0, 1]\n");
+  EXPECT_NE(text.find("metres"), std::string::npos) << text;
+}
+
 TEST_F(LoadConfig, RecordingAndDeviceExcludeEachOther) {
   const auto text = failure(std::string(kSmallest) +
                             "[sensors.k]\nfx = 1\nfy = 1\ncx = 1\ncy = 1\nuri = \"a\"\noni_file = \"b\"\n");

@@ -64,8 +64,8 @@ TEST(Conversions, SensorKeysReachTheSensorProcess) {
 
 TEST(Conversions, LinkKeysReachTheClient) {
   RobotConfig robot;
-  robot.host = "h";
-  robot.byte_order = "little";
+  robot.host = std::string("h");
+  robot.byte_order = std::string("little");
   robot.link.stale_after = Duration(111);
   robot.link.eviction_pause = Duration(222);
   const auto settings = link_settings(robot);

@@ -187,6 +187,16 @@ class CellFixture : public ::testing::Test {
         },
         done);
   }
+  /// Checks that agree do not make the pose valid.
+  void expect_checks_change_nothing() {
+    const auto frames = frames_sent_;
+    watch_until([&] { return frames_sent_ >= frames + 50; });
+    EXPECT_FALSE(pose().valid);
+  }
+  void set_health(SensorHealth::State state) {
+    const std::lock_guard lock(feed_->mutex);
+    feed_->health.state = state;
+  }
   /// A calibration that has been accepted.
   std::string calibrate() {
     const auto started = start_job(1);
@@ -203,6 +213,7 @@ class CellFixture : public ::testing::Test {
     LiveCellSettings settings;
     settings.watch.check_period = std::chrono::milliseconds(5);
     settings.watch.recheck_period = std::chrono::milliseconds(5);
+    settings.watch.least_drift = std::chrono::milliseconds(50);
     settings.gate.settle_time = std::chrono::milliseconds(100);
     return settings;
   }();

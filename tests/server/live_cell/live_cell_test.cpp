@@ -31,6 +31,7 @@ TEST_F(Cell, AcceptedCalibrationBecomesThePose) {
   EXPECT_EQ(ended.status, JobStatus::succeeded);
   EXPECT_TRUE(ended.current);
   EXPECT_EQ(ended.result->views, 3);
+  EXPECT_EQ(ended.postures_seen, 3);
   EXPECT_TRUE(pose().valid);
   EXPECT_EQ(pose().known->calibration_id, started->id);
   EXPECT_EQ(pose().job, "");
@@ -93,25 +94,6 @@ TEST_F(Cell, CalibrationThatIsNotToBeActivatedCanBeLater) {
   EXPECT_FALSE(job(first).current);
 }
 
-TEST_F(Cell, StoredPoseIsUnverifiedAfterARestartUntilACheckAgrees) {
-  const auto id = calibrate();
-  start();
-  EXPECT_EQ(pose().state, PoseState::unverified);
-  EXPECT_FALSE(pose().valid);
-  EXPECT_EQ(pose().known->calibration_id, id);
-  watch_until([&] { return pose().valid; });
-  EXPECT_EQ(pose().state, PoseState::calibrated);
-}
-
-TEST_F(Cell, PoseThatNoLongerFitsIsDrifted) {
-  calibrate();
-  agrees_ = false;
-  watch_until([&] { return pose().state == PoseState::drifted; });
-  EXPECT_FALSE(pose().valid);
-  agrees_ = true;
-  watch_until([&] { return pose().valid; });
-}
-
 TEST_F(Cell, OneCalibrationOfASensorAtATime) {
   const auto first = start_job(2);
   const auto second = start_job(2);
@@ -169,6 +151,36 @@ TEST_F(Cell, LastPoseIsTheGuessOfTheNextCalibration) {
   EXPECT_EQ(guesses_x, (std::vector<double>{0.0, 0.3}));
 }
 
+TEST_F(Cell, WithoutAGuessTwoPosturesAreCollectedAndOneIsRefused) {
+  guess_.reset();
+  settings_.jobs.collector.postures = 1;
+  start();
+  const auto refused = start_job(1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ApiError::guess_needed);
+  bool guessed = true;
+  on_calibrate_ = [&](auto views, const CalibrationSettings& settings) {
+    guessed = settings.guess_T_base_sensor.has_value();
+    return accepted(views);
+  };
+  api::CalibrationRequest request;
+  request.sensor_id = "eye";
+  const auto id = cell_->start_calibration(request)->id;
+  EXPECT_EQ(job(id).postures_wanted, 2);
+  let_it_end(id);
+  EXPECT_EQ(job(id).status, JobStatus::succeeded);
+  EXPECT_FALSE(guessed);
+  EXPECT_TRUE(start_job(1)) << "the last pose is a guess";
+}
+
+TEST_F(Cell, LatencyOfTheLinkIsTakenOffTheStampsOfJoints) {
+  settings_.joint_latency = 10ms;
+  start();
+  const auto arrived = Clock::now();
+  events_.on_joints({0, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {}, ++joints_sent_, arrived});
+  EXPECT_EQ(cell_->robot().joints->stamp, arrived - 10ms);
+}
+
 TEST_F(Cell, MovingRobotGivesNoViewsAndTheReasonIsShown) {
   double turn = 0;
   repeat_until(
@@ -207,6 +219,54 @@ TEST_F(Cell, HistoryShowsTheCalibrationUnderWayAsItIs) {
   ASSERT_TRUE(page);
   EXPECT_EQ(page->calibrations.front().id, id);
   EXPECT_EQ(page->calibrations.front().status, JobStatus::collecting);
+}
+
+TEST_F(Cell, CollectsNothingMoreWhileItComputes) {
+  std::atomic<bool> may_end{false};
+  on_calibrate_ = [&](auto views, const CalibrationSettings&) {
+    while (!may_end) std::this_thread::yield();
+    return accepted(views);
+  };
+  const auto id = start_job(2)->id;
+  repeat_until(
+      [&] {
+        stand(0.3 * (1 + job(id).postures_seen));
+        show();
+      },
+      [&] { return job(id).status == JobStatus::running; });
+  const auto views = cell_->sensor("eye")->views.views;
+  repeat_until(
+      [&] {
+        stand(1.5);
+        show();
+      },
+      [&] { return cell_->sensor("eye")->views.views > views + 3; });
+  EXPECT_EQ(job(id).postures_seen, 2);
+  may_end = true;
+  wait_for([&] { return job(id).finished.has_value(); });
+  EXPECT_EQ(job(id).postures_seen, 2);
+}
+
+/// For the thread sanitizer.
+TEST_F(Cell, SensorCanBeAskedForWhileItStarts) {
+  std::atomic<bool> asking{true};
+  ASSERT_TRUE(cell_->add_sensor({"late", camera_, Clock::duration(0), guess_}));
+  std::thread client([&] {
+    while (asking) EXPECT_FALSE(cell_->sensor("late")->health.empty());
+  });
+  cell_->start("late", std::make_unique<FedSource>(std::make_shared<FedSource::Feed>()));
+  wait_for([&] { return cell_->sensor("late")->health == "streaming"; });
+  asking = false;
+  client.join();
+}
+
+TEST_F(Cell, HistoryBeforeACalibrationThatIsNotThereIsRefused) {
+  const auto id = calibrate();
+  EXPECT_TRUE(cell_->history({"eye", 10, id}));
+  const auto refused = cell_->history({"eye", 10, "nope"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ApiError::bad_query);
+  EXPECT_NE(refused.error().detail.find("nope"), std::string::npos);
 }
 
 TEST_F(Cell, EndsAtOnceWhileCollecting) {

@@ -17,6 +17,11 @@ const PoseCheck kNothingSeen{false, false, 0, 0, 10};
 
 class Watch : public ::testing::Test {
  protected:
+  /// Disagreements from 1 s to 4 s.
+  void drift() {
+    for (int i = 0; i <= 30; ++i) watch_.on_check(kDisagrees, at(1s + i * 100ms));
+  }
+
   PoseWatch watch_{PoseWatchSettings{}};
 };
 
@@ -57,7 +62,7 @@ TEST_F(Watch, OneDisagreementEndsValidityAtOnceAndARowOfThemIsDrift) {
   watch_.on_check(kDisagrees, at(1s));
   EXPECT_EQ(watch_.state(), PoseState::unverified);
   EXPECT_FALSE(watch_.is_valid(at(1s)));
-  for (int i = 1; i < 5; ++i) watch_.on_check(kDisagrees, at(1s + i * 100ms));
+  drift();
   EXPECT_EQ(watch_.state(), PoseState::drifted);
 }
 
@@ -77,17 +82,62 @@ TEST_F(Watch, FalseAlarmIsOverWithTheNextAgreement) {
   EXPECT_TRUE(watch_.is_valid(at(1100ms)));
 }
 
-TEST_F(Watch, DriftedPoseNeedsARowOfAgreements) {
+TEST_F(Watch, DriftedPoseStaysSoHoweverOftenChecksAgreeUntilItIsSetAgain) {
   watch_.set_fresh(at(0ms));
-  for (int i = 0; i < 5; ++i) watch_.on_check(kDisagrees, at(1s));
-  watch_.on_check(kAgrees, at(2s));
-  watch_.on_check(kAgrees, at(3s));
-  watch_.on_check(kDisagrees, at(4s));
-  watch_.on_check(kAgrees, at(5s));
-  watch_.on_check(kAgrees, at(6s));
+  drift();
+  ASSERT_EQ(watch_.state(), PoseState::drifted);
+  for (int i = 0; i < 100; ++i) watch_.on_check(kAgrees, at(10s + i * 1s));
   EXPECT_EQ(watch_.state(), PoseState::drifted);
-  watch_.on_check(kAgrees, at(7s));
-  EXPECT_TRUE(watch_.is_valid(at(7s)));
+  EXPECT_FALSE(watch_.is_valid(at(110s)));
+  EXPECT_NE(watch_.reason(at(110s)).find("activate"), std::string::npos);
+  watch_.set_stored();
+  watch_.on_check(kAgrees, at(111s));
+  EXPECT_TRUE(watch_.is_valid(at(111s)));
+}
+
+TEST_F(Watch, DriftSurvivesARestart) {
+  watch_.set_drifted();
+  watch_.on_check(kAgrees, at(1s));
+  EXPECT_EQ(watch_.state(), PoseState::drifted);
+}
+
+TEST_F(Watch, SomebodyPassingByIsNoDrift) {
+  watch_.set_fresh(at(0ms));
+  for (int i = 0; i < 20; ++i) watch_.on_check(kDisagrees, at(1s + i * 100ms));
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  watch_.on_check(kAgrees, at(3100ms));
+  EXPECT_TRUE(watch_.is_valid(at(3100ms)));
+}
+
+TEST_F(Watch, LostSensorEndsValidityAtOnceAndACheckAfterwardsBringsItBack) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_sensor_lost();
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  EXPECT_FALSE(watch_.is_valid(at(1s)));
+  EXPECT_NE(watch_.reason(at(1s)).find("lost"), std::string::npos);
+  watch_.on_check(kNothingSeen, at(2s));
+  EXPECT_FALSE(watch_.is_valid(at(2s)));
+  watch_.on_check(kAgrees, at(3s));
+  EXPECT_TRUE(watch_.is_valid(at(3s)));
+}
+
+TEST_F(Watch, LossOfTheSensorEndsNoDriftAndMakesNoPose) {
+  watch_.on_sensor_lost();
+  EXPECT_EQ(watch_.state(), PoseState::uncalibrated);
+  watch_.set_drifted();
+  watch_.on_sensor_lost();
+  EXPECT_EQ(watch_.state(), PoseState::drifted);
+}
+
+TEST_F(Watch, WithheldPoseIsNotMadeValidByChecks) {
+  watch_.set_withheld("the intrinsics have changed");
+  for (int i = 0; i < 10; ++i) watch_.on_check(kAgrees, at(i * 1s));
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  EXPECT_FALSE(watch_.is_valid(at(10s)));
+  EXPECT_EQ(watch_.reason(at(10s)), "the intrinsics have changed");
+  EXPECT_TRUE(watch_.last_check(at(10s))->agrees);
+  watch_.set_fresh(at(11s));
+  EXPECT_TRUE(watch_.is_valid(at(11s)));
 }
 
 }  // namespace

@@ -79,5 +79,15 @@ TEST(FrameAverage, ImagesAreAveragedOnlyWhenEveryFrameHasOne) {
   EXPECT_EQ(average_views(views).image->pixels, (std::vector<std::uint16_t>{15, 30}));
 }
 
+TEST(PostureCollector, StaysCompleteOnceItsViewsAreTaken) {
+  PostureCollector collector({2, 0.17, 1});
+  for (const double joint : {0.0, 0.5}) collector.offer(view(joint));
+  EXPECT_EQ(collector.take_views().size(), 2U);
+  collector.offer(view(1.0));
+  EXPECT_TRUE(collector.is_complete());
+  EXPECT_EQ(collector.seen(), 2);
+  EXPECT_TRUE(collector.take_views().empty());
+}
+
 }  // namespace
 }  // namespace calibrd

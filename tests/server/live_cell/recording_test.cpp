@@ -102,8 +102,8 @@ TEST_F(LiveRecording, ResidualIsMeasuredMinusPredictedDepth) {
   ASSERT_EQ(cloud->residual_m.size(), cloud->points.size());
   ASSERT_FALSE(cloud->points.empty());
   for (const float residual :
-       cloud->residual_m)  // the tops lie 1.9, 1.95 and 2 m below the sensor, 1.5 m is measured
-    EXPECT_NEAR(residual, -0.45F, 0.051F);
+       cloud->residual_m)  // tops and sides lie 1.9 to 2.1 m below the sensor, 1.5 m is measured
+    EXPECT_NEAR(residual, -0.5F, 0.101F);
 }
 
 }  // namespace

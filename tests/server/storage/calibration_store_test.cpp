@@ -8,6 +8,8 @@
 
 #include <fstream>
 
+#include "server/storage/schema.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -85,15 +87,46 @@ TEST_F(Store, TheLastActivatedIsCurrentAndAnEarlierOneCanBeAgain) {
   finish(first);
   finish(second);
   EXPECT_FALSE(*store_->current("kinect2"));
-  EXPECT_TRUE(store_->activate(first));
-  EXPECT_TRUE(store_->activate(second));
-  EXPECT_EQ((*store_->current("kinect2"))->id, "c2");
-  EXPECT_TRUE(store_->activate(first));
+  EXPECT_TRUE(store_->activate(first, "fx 365"));
+  EXPECT_TRUE(store_->activate(second, "fx 366"));
+  EXPECT_EQ((*store_->current("kinect2"))->calibration.id, "c2");
+  EXPECT_TRUE(store_->activate(first, "fx 365"));
   open();
-  EXPECT_EQ((*store_->current("kinect2"))->id, "c1");
+  EXPECT_EQ((*store_->current("kinect2"))->calibration.id, "c1");
   EXPECT_TRUE((*store_->find("c1"))->current);
   EXPECT_FALSE((*store_->find("c2"))->current);
+  EXPECT_EQ((*store_->current("kinect2"))->basis, "fx 365");
   EXPECT_FALSE(*store_->current("other"));
+}
+
+TEST_F(Store, DriftIsKeptUntilTheCalibrationIsActivatedAgain) {
+  const auto first = add("c1"), second = add("c2");
+  finish(first);
+  finish(second);
+  EXPECT_TRUE(store_->activate(first, ""));
+  EXPECT_TRUE(store_->add_drift("c2")) << "not current: nothing to record";
+  EXPECT_FALSE((*store_->current("kinect2"))->drifted);
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(store_->add_drift("c1"));
+  open();
+  EXPECT_TRUE((*store_->current("kinect2"))->drifted);
+  EXPECT_TRUE(store_->activate(first, ""));
+  EXPECT_FALSE((*store_->current("kinect2"))->drifted);
+  EXPECT_EQ(run_raw("DELETE FROM drifts"), "drifts are kept");
+}
+
+TEST_F(Store, FileOfTheFirstSchemaIsBroughtUpToDate) {
+  store_.reset();
+  std::filesystem::remove(file());
+  run_raw(std::string(kFirstSchema) +
+          "INSERT INTO calibrations (id, sensor_id, created_ms, method, postures, activate, fingerprint) "
+          "VALUES ('old', 'kinect2', 0, 'full', 3, 1, '{}');"
+          "INSERT INTO activations (sensor_id, calibration_id, activated_ms) VALUES ('kinect2', 'old', 0);"
+          "PRAGMA user_version = 1");
+  open();
+  const auto current = store_->current("kinect2");
+  ASSERT_TRUE(current && *current);
+  EXPECT_EQ((*current)->calibration.id, "old");
+  EXPECT_EQ((*current)->basis, "");
 }
 
 TEST_F(Store, ResultsCannotBeChangedOrDeleted) {
@@ -168,6 +201,19 @@ TEST_F(Store, StoreOfANewerVersionIsRefused) {
   const auto opened = CalibrationStore::open(file());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, StorageError::newer_schema);
+}
+
+TEST_F(Store, BelongsToOneProcessAtATime) {
+  add("under way");
+  const auto link = folder_ / "link.db";
+  std::filesystem::create_symlink(file(), link);
+  for (const auto& name : {file(), link}) {
+    const auto second = CalibrationStore::open(name);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, StorageError::in_use);
+    EXPECT_NE(second.error().message().find("storage.path"), std::string::npos);
+  }
+  EXPECT_FALSE((**store_->find("under way")).finished) << "the second daemon ended it";
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include "api/pose/pose_numbers.hpp"
+#include "core/geometry/pose_numbers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace calibrd::api {
+namespace calibrd {
 namespace {
 
 TEST(PoseNumbers, QuaternionIsReadScalarLast) {
@@ -15,6 +15,17 @@ TEST(PoseNumbers, QuaternionIsReadScalarLast) {
   const auto pose = pose_of_numbers(quarter_turn_about_z);
   ASSERT_TRUE(pose);
   EXPECT_TRUE((*pose * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1, 3, 3), 1e-12));
+}
+
+TEST(PoseNumbers, LengthOfAQuaternionDoesNotMatter) {
+  const auto pose = pose_of_numbers(std::vector<double>{0, 0, 0, 0, 0, 5, 5});
+  ASSERT_TRUE(pose);
+  EXPECT_TRUE((*pose * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+}
+
+TEST(PoseNumbers, LastRowMayHaveGoneThroughFloats) {
+  EXPECT_TRUE(
+      pose_of_numbers(std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1e-8, 0, 0, 0.9999999}));
 }
 
 TEST(PoseNumbers, MatricesAreReadRowMajor) {
@@ -38,11 +49,13 @@ TEST(PoseNumbers, RoundedRotationIsMadeExact) {
 TEST(PoseNumbers, WhatIsNoPoseIsRefusedWithItsReason) {
   const auto error = [](const std::vector<double>& numbers) { return pose_of_numbers(numbers).error().code; };
   EXPECT_EQ(error({1, 2, 3}), PoseNumbersError::wrong_count);
-  EXPECT_EQ(error({0, 0, 0, 0, 0, 0, 2}), PoseNumbersError::not_a_unit_quaternion);
+  EXPECT_EQ(error({0, 0, 0, 0, 0, 0, 0}), PoseNumbersError::no_direction);
+  EXPECT_EQ(error({1370, 730, 860, 0, 0, 0, 1}), PoseNumbersError::too_far);
+  EXPECT_EQ(error({1, 0, 0, 0, 0, 1, 0, 730, 0, 0, 1, 0}), PoseNumbersError::too_far);
   EXPECT_EQ(error({0, 0, NAN, 0, 0, 0, 1}), PoseNumbersError::not_finite);
   EXPECT_EQ(error({-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}), PoseNumbersError::not_a_rotation);
   EXPECT_EQ(error({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}), PoseNumbersError::bad_last_row);
 }
 
 }  // namespace
-}  // namespace calibrd::api
+}  // namespace calibrd

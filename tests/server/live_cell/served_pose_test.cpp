@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of an accepted pose: restarts, checks, other configurations, lost sensors.
+#include "tests/server/live_cell/cell_fixture.hpp"
+
+namespace calibrd {
+namespace {
+
+using api::PoseState;
+
+using ServedPose = CellFixture;
+
+TEST_F(ServedPose, StoredPoseIsUnverifiedAfterARestartUntilACheckAgrees) {
+  const auto id = calibrate();
+  start();
+  EXPECT_EQ(pose().state, PoseState::unverified);
+  EXPECT_FALSE(pose().valid);
+  EXPECT_EQ(pose().known->calibration_id, id);
+  watch_until([&] { return pose().valid; });
+  EXPECT_EQ(pose().state, PoseState::calibrated);
+}
+
+TEST_F(ServedPose, PoseThatNoLongerFitsIsDrifted) {
+  calibrate();
+  agrees_ = false;
+  watch_until([&] { return pose().state == PoseState::drifted; });
+  EXPECT_FALSE(pose().valid);
+}
+
+TEST_F(ServedPose, DriftedPoseIsNotMadeValidByChecksNorByARestart) {
+  const auto id = calibrate();
+  agrees_ = false;
+  watch_until([&] { return pose().state == PoseState::drifted; });
+  agrees_ = true;
+  expect_checks_change_nothing();
+  EXPECT_EQ(pose().state, PoseState::drifted);
+  start();
+  expect_checks_change_nothing();
+  EXPECT_EQ(pose().state, PoseState::drifted);
+  ASSERT_TRUE(cell_->activate_calibration(id));
+  watch_until([&] { return pose().valid; });
+}
+
+TEST_F(ServedPose, StoredPoseOfOtherIntrinsicsStaysInvalidUntilItIsActivated) {
+  const auto id = calibrate();
+  camera_.fx *= 1.02;
+  start();
+  expect_checks_change_nothing();
+  EXPECT_EQ(pose().state, PoseState::unverified);
+  EXPECT_NE(pose().reason.find("intrinsics (now 32x24 fx 30.6"), std::string::npos) << pose().reason;
+  EXPECT_EQ(pose().reason.find("robot"), std::string::npos) << pose().reason;
+  ASSERT_TRUE(cell_->activate_calibration(id));
+  watch_until([&] { return pose().valid; });
+  start();
+  watch_until([&] { return pose().valid; });
+}
+
+TEST_F(ServedPose, StoredPoseOfAnotherRobotModelStaysInvalidUntilACalibration) {
+  calibrate();
+  std::ofstream(settings_.urdf, std::ios::app) << "<!-- edited -->";
+  start();
+  expect_checks_change_nothing();
+  EXPECT_NE(pose().reason.find("robot model"), std::string::npos) << pose().reason;
+  calibrate();
+  EXPECT_TRUE(pose().valid);
+}
+
+TEST_F(ServedPose, PoseOfALostSensorIsUnverifiedAtOnceUntilACheckOfALaterFrame) {
+  calibrate();
+  ASSERT_TRUE(pose().valid);
+  set_health(SensorHealth::State::lost);
+  wait_for([&] { return !pose().valid; });
+  EXPECT_EQ(pose().state, PoseState::unverified);
+  expect_checks_change_nothing();
+  set_health(SensorHealth::State::streaming);
+  watch_until([&] { return pose().valid; });
+}
+
+TEST_F(ServedPose, RestartOfTheSensorsProcessIsALossToo) {
+  calibrate();
+  {
+    const std::lock_guard lock(feed_->mutex);
+    ++feed_->health.restarts;
+  }
+  wait_for([&] { return !pose().valid; });
+  EXPECT_EQ(pose().state, PoseState::unverified);
+  watch_until([&] { return pose().valid; });
+}
+
+}  // namespace
+}  // namespace calibrd
