@@ -28,20 +28,8 @@ struct VerdictSettings {
   /// A view is at odds with the pose when freeing its joints would move the robot's surface by more than
   /// this, and by more than the residuals' own rms ...
   double max_joint_pull_m = 0.0015;
-<<<<<<< HEAD
-  double max_view_seen_through = 0.25;   ///< ... or when so much of the robot is seen through in it,
-  double min_view_found = 0.4;           ///< ... or when less of it is found than this share of what is usual
-  double max_views_at_odds = 0.2;        ///< share of the views; above: rejected, below: uncertain
-  double min_link_coverage = 0.5;        ///< a link that is found less, and mostly seen through, is elsewhere
-  std::size_t min_link_pixels = 60;      ///< fewer predicted pixels say nothing of a link
-  double max_held_out_growth = 2;        ///< held-out residual over the residual rms; above: rejected
-  double doubtful_held_out_growth = 1.5; ///< ... above: uncertain
-  double min_outline_on_edges = 0.3;     ///< see ImageRegistration::here
-  double image_margin = 0.03;            ///< by which an outline must lie better elsewhere to count as misplaced
-  double min_margin = 0.05;              ///< over a runner-up that differs; below: uncertain
-=======
   double max_view_seen_through = 0.25;  ///< ... or when so much of the robot is seen through in it,
-  double min_view_found = 0.6;          ///< ... or when less of it is found than this share of what is usual
+  double min_view_found = 0.4;          ///< ... or when less of it is found than this share of what is usual
   double max_views_at_odds = 0.2;       ///< share of the views; above: rejected, below: uncertain
   double min_link_coverage = 0.5;       ///< a link that is found less, and mostly seen through, is elsewhere
   std::size_t min_link_pixels = 60;     ///< fewer predicted pixels say nothing of a link
@@ -50,7 +38,6 @@ struct VerdictSettings {
   double min_outline_on_edges = 0.3;      ///< see ImageRegistration::here
   double image_margin = 0.03;  ///< by which an outline must lie better elsewhere to count as misplaced
   double min_margin = 0.05;    ///< over a runner-up that differs; below: uncertain
->>>>>>> main
 };
 
 /// Fills verdict, reasons, pose and uncertainty of `result` from where the refinement ended.

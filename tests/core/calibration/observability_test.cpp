@@ -21,9 +21,7 @@ std::vector<WeakDirection> weak(const Matrix6d& covariance) {
   return weak_directions(covariance, true_T_base_sensor(), kRobot, {});
 }
 
-TEST(Observability, HeldSensorHasNoWeakDirection) {
-  EXPECT_TRUE(weak(1e-8 * Matrix6d::Identity()).empty());
-}
+TEST(Observability, HeldSensorHasNoWeakDirection) { EXPECT_TRUE(weak(1e-8 * Matrix6d::Identity()).empty()); }
 
 TEST(Observability, NamesTheLineOfSight) {
   Vector6d delta = Vector6d::Zero();
@@ -60,17 +58,17 @@ TEST(Observability, ReasonOfAnUncertainResultNamesTheDirection) {
   judge(r, evidence, {}, result);
   ASSERT_EQ(result.verdict, Verdict::uncertain);
   ASSERT_EQ(result.reasons.size(), 1U);
-  EXPECT_NE(result.reasons[0].text.find("along the line of sight"), std::string::npos) << result.reasons[0].text;
+  EXPECT_NE(result.reasons[0].text.find("along the line of sight"), std::string::npos)
+      << result.reasons[0].text;
 }
 
 TEST(Workspace, ErrorGrowsWithTheDistanceFromTheSensor) {
   Matrix6d covariance = Matrix6d::Zero();
   covariance.topLeftCorner<3, 3>() = 1e-6 * Eigen::Matrix3d::Identity();  // 1 mrad about each axis
   const Pose T_base_sensor = true_T_base_sensor();
-  const auto errors =
-      workspace_errors(covariance, T_base_sensor,
-                       {{"at the sensor", T_base_sensor.translation()},
-                        {"a metre ahead", T_base_sensor * Eigen::Vector3d(0, 0, 1)}});
+  const auto errors = workspace_errors(covariance, T_base_sensor,
+                                       {{"at the sensor", T_base_sensor.translation()},
+                                        {"a metre ahead", T_base_sensor * Eigen::Vector3d(0, 0, 1)}});
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_NEAR(errors[0].sigma_m, 0, 1e-12);
   EXPECT_NEAR(errors[1].sigma_m, std::sqrt(2.0) * 1e-3, 1e-9);  // two axes turn it, one does not

@@ -117,7 +117,8 @@ TEST_P(VerdictContradiction, RejectsWithItsReason) {
   const auto result = judged_with(evidence);
   expect_rejected(result, GetParam().code);
   ASSERT_FALSE(result.reasons.empty());
-  EXPECT_NE(result.reasons.front().text.find(GetParam().in_text), std::string::npos) << result.reasons.front().text;
+  EXPECT_NE(result.reasons.front().text.find(GetParam().in_text), std::string::npos)
+      << result.reasons.front().text;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -126,13 +127,22 @@ INSTANTIATE_TEST_SUITE_P(
         Contradiction{"JointsPull", "views_disagree",
                       [](Evidence& e) { e.joint_pull_m[1] = e.joint_pull_m[3] = 0.004; }, "1, 3"},
         Contradiction{"ViewSeenThrough", "views_disagree",
-                      [](Evidence& e) { e.views[2] = {1000, 980, 500, 480, 0}; }, "view 2"},
-        Contradiction{"ViewEmpty", "views_disagree", [](Evidence& e) { e.views[0] = {1000, 300, 280, 0, 20}; },
+                      [](Evidence& e) {
+                        e.views[2] = {1000, 980, 500, 480, 0};
+                      },
+                      "view 2"},
+        Contradiction{"ViewEmpty", "views_disagree",
+                      [](Evidence& e) {
+                        e.views[0] = {1000, 300, 280, 0, 20};
+                      },
                       "view 0"},
         Contradiction{"HeldOut", "held_out_disagrees", [](Evidence& e) { e.held_out_residual_m = 0.004; },
                       "4.00 mm"},
         Contradiction{"LinkElsewhere", "link_elsewhere",
-                      [](Evidence& e) { e.links[1] = {1000, 900, 100, 800, 0}; }, "link_2"},
+                      [](Evidence& e) {
+                        e.links[1] = {1000, 900, 100, 800, 0};
+                      },
+                      "link_2"},
         Contradiction{"ImageShifted", "image_not_registered",
                       [](Evidence& e) { e.images = {800, 0.3, 0.7, 12, -6, 0.2, 0.3}; }, "12 px"},
         Contradiction{"ImageMirrored", "image_not_registered",

@@ -66,9 +66,8 @@ void move_image(GreyImage& image, int dx, int dy) {
   const GreyImage from = image;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      image.pixels[static_cast<std::size_t>(y * image.width + x)] =
-          from.pixels[static_cast<std::size_t>(std::clamp(y - dy, 0, image.height - 1) * image.width +
-                                               std::clamp(x - dx, 0, image.width - 1))];
+      image.pixels[static_cast<std::size_t>(y * image.width + x)] = from.pixels[static_cast<std::size_t>(
+          std::clamp(y - dy, 0, image.height - 1) * image.width + std::clamp(x - dx, 0, image.width - 1))];
 }
 
 struct Mistake {
@@ -108,73 +107,79 @@ TEST_P(WrongInput, IsRejectedAndToldWhy) {
       << codes_of(result);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    , WrongInput,
-    testing::Values(
-        Mistake{"JointsCountedSLURBTE",
-                [](Trial& t) {
-                  for (View& view : t.views) {
-                    auto& q = view.joint_positions_rad;
-                    std::rotate(q.begin() + 2, q.begin() + 3, q.end());
-                  }
-                },
-                "joint_order_wrong"},
-        Mistake{"JointTurnsTheOtherWay",
-                [](Trial& t) {
-                  for (View& view : t.views) view.joint_positions_rad[2] *= -1;
-                },
-                "joint_sign_wrong"},
-        Mistake{"ModelOfAnotherRobot",
-                [](Trial& t) {
-                  t.model = &robots().arm6.model;
-                  for (View& view : t.views) view.joint_positions_rad.pop_back();
-                },
-                "robot_model_wrong"},
-        Mistake{"SensorIsMirrored",
-                [](Trial& t) {
-                  for (View& view : t.views) {
-                    flip(view.depth.raw, view.depth.width);
-                    flip(view.image->pixels, view.image->width);
-                  }
-                },
-                "depth_mirrored"},
-        Mistake{"FocalLengthsAndCentresSwapped",
-                [](Trial& t) {
-                  std::swap(t.camera.fx, t.camera.fy);
-                  std::swap(t.camera.cx, t.camera.cy);
-                },
-                "intrinsics_swapped"},
-        Mistake{"CentresSwapped", [](Trial& t) { std::swap(t.camera.cx, t.camera.cy); }, "intrinsics_swapped"},
-        Mistake{"ImageOfAnotherPlace",
-                [](Trial& t) {
-                  for (View& view : t.views) move_image(*view.image, 12, -6);
-                },
-                "image_not_registered"},
-        Mistake{"ImageAloneIsMirrored",
-                [](Trial& t) {
-                  for (View& view : t.views) flip(view.image->pixels, view.image->width);
-                },
-                "image_not_registered"},
-        Mistake{"ImageOfTheNextView",
-                [](Trial& t) {
-                  for (std::size_t v = 0; v + 1 < t.views.size(); ++v) t.views[v].image = t.views[v + 1].image;
-                },
-                "image_not_registered"},
-        Mistake{"JointsOfTheNextView",
-                [](Trial& t) {
-                  for (std::size_t v = 0; v < t.views.size(); ++v)
-                    t.views[v].joint_positions_rad = good_scene().views[v + 1].joint_positions_rad;
-                },
-                "joints_not_of_frame"},
-        Mistake{"RobotMoves",
-                [](Trial& t) {
-                  std::mt19937_64 random(5);
-                  std::normal_distribution<double> error_rad(0, 0.03);
-                  for (View& view : t.views)
-                    for (double& q : view.joint_positions_rad) q += error_rad(random);
-                },
-                "joints_not_of_frame"}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(, WrongInput,
+                         testing::Values(Mistake{"JointsCountedSLURBTE",
+                                                 [](Trial& t) {
+                                                   for (View& view : t.views) {
+                                                     auto& q = view.joint_positions_rad;
+                                                     std::rotate(q.begin() + 2, q.begin() + 3, q.end());
+                                                   }
+                                                 },
+                                                 "joint_order_wrong"},
+                                         Mistake{"JointTurnsTheOtherWay",
+                                                 [](Trial& t) {
+                                                   for (View& view : t.views)
+                                                     view.joint_positions_rad[2] *= -1;
+                                                 },
+                                                 "joint_sign_wrong"},
+                                         Mistake{"ModelOfAnotherRobot",
+                                                 [](Trial& t) {
+                                                   t.model = &robots().arm6.model;
+                                                   for (View& view : t.views)
+                                                     view.joint_positions_rad.pop_back();
+                                                 },
+                                                 "robot_model_wrong"},
+                                         Mistake{"SensorIsMirrored",
+                                                 [](Trial& t) {
+                                                   for (View& view : t.views) {
+                                                     flip(view.depth.raw, view.depth.width);
+                                                     flip(view.image->pixels, view.image->width);
+                                                   }
+                                                 },
+                                                 "depth_mirrored"},
+                                         Mistake{"FocalLengthsAndCentresSwapped",
+                                                 [](Trial& t) {
+                                                   std::swap(t.camera.fx, t.camera.fy);
+                                                   std::swap(t.camera.cx, t.camera.cy);
+                                                 },
+                                                 "intrinsics_swapped"},
+                                         Mistake{"CentresSwapped",
+                                                 [](Trial& t) { std::swap(t.camera.cx, t.camera.cy); },
+                                                 "intrinsics_swapped"},
+                                         Mistake{"ImageOfAnotherPlace",
+                                                 [](Trial& t) {
+                                                   for (View& view : t.views) move_image(*view.image, 12, -6);
+                                                 },
+                                                 "image_not_registered"},
+                                         Mistake{"ImageAloneIsMirrored",
+                                                 [](Trial& t) {
+                                                   for (View& view : t.views)
+                                                     flip(view.image->pixels, view.image->width);
+                                                 },
+                                                 "image_not_registered"},
+                                         Mistake{"ImageOfTheNextView",
+                                                 [](Trial& t) {
+                                                   for (std::size_t v = 0; v + 1 < t.views.size(); ++v)
+                                                     t.views[v].image = t.views[v + 1].image;
+                                                 },
+                                                 "image_not_registered"},
+                                         Mistake{"JointsOfTheNextView",
+                                                 [](Trial& t) {
+                                                   for (std::size_t v = 0; v < t.views.size(); ++v)
+                                                     t.views[v].joint_positions_rad =
+                                                         good_scene().views[v + 1].joint_positions_rad;
+                                                 },
+                                                 "joints_not_of_frame"},
+                                         Mistake{"RobotMoves",
+                                                 [](Trial& t) {
+                                                   std::mt19937_64 random(5);
+                                                   std::normal_distribution<double> error_rad(0, 0.03);
+                                                   for (View& view : t.views)
+                                                     for (double& q : view.joint_positions_rad)
+                                                       q += error_rad(random);
+                                                 },
+                                                 "joints_not_of_frame"}),
+                         [](const auto& test) { return test.param.name; });
 
 TEST(WrongGuess, IsToldApartFromAWrongRobot) {
   const Trial trial = good_trial();
