@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "core/global/find_start.hpp"
-#include "core/global/moving_points.hpp"
+#include "core/calibration/seen_motion.hpp"
 #include "core/registration/coarse_align.hpp"
 
 namespace calibrd {
@@ -22,13 +21,11 @@ bool is_same(const Pose& a, const Pose& b) {
 
 /// Best first.
 std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> views, const CameraModel& camera,
-                                          std::vector<Pose> poses) {
+                                          const SeenMotion& motion, std::vector<Pose> poses) {
   CoarseSettings align;
   align.reduction = 8;
   for (Pose& pose : poses) pose = coarse_align(views, camera, pose, align);
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (MovingPoints& moving : find_moving_points(views, camera, {})) masks.push_back(std::move(moving.mask));
-  const auto scores = render_scores(views, masks, camera, poses, {6, 0.025});
+  const auto scores = render_scores(views, motion.masks, camera, poses, {6, 0.025});
   std::vector<StartHypothesis> starts;
   for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
@@ -49,14 +46,15 @@ ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
 }  // namespace
 
 std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera) {
-  const auto starts = find_starts(views, camera, {});
+  const SeenMotion motion = see_motion(views, camera);
+  const auto starts = starts_from(motion, views, camera, {});
   if (starts.empty()) return std::nullopt;
   const ChosenStart chosen = first_of(starts);
   if (!chosen.margin || *chosen.margin > kClear) return chosen;
   std::vector<Pose> poses;
   for (const StartHypothesis& start : starts)
     if (poses.size() < kSeconds) poses.push_back(start.T_base_sensor);
-  return first_of(judged_finer(views, camera, std::move(poses)));
+  return first_of(judged_finer(views, camera, motion, std::move(poses)));
 }
 
 }  // namespace calibrd

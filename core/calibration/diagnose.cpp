@@ -7,15 +7,13 @@
 
 #include "core/calibration/alternatives.hpp"
 #include "core/calibration/free_joints.hpp"
-#include "core/global/find_start.hpp"
-#include "core/global/moving_points.hpp"
+#include "core/calibration/seen_motion.hpp"
 #include "core/registration/coarse_align.hpp"
 
 namespace calibrd {
 namespace {
 
 using Views = std::vector<RegistrationView>;
-using Masks = std::vector<std::vector<std::uint8_t>>;
 
 constexpr double kTolerance_m = 0.02;
 constexpr double kLeastAgreeing = 0.9;      // share of a free fit's pixels
@@ -58,31 +56,25 @@ Input under(const Alternative& alternative, std::span<const RegistrationView> vi
   return input;
 }
 
-std::vector<double> scores_of(const Input& input, const Masks& masks, std::span<const Pose> poses) {
+std::vector<double> scores_of(const Input& input, const SeenMotion& motion, std::span<const Pose> poses) {
   std::vector<double> values;
-  for (const RenderScore& score : render_scores(input.views, masks, input.camera, poses, {6, kTolerance_m}))
+  for (const RenderScore& score :
+       render_scores(input.views, motion.masks, input.camera, poses, {6, kTolerance_m}))
     values.push_back(score.value());
   return values;
 }
 
-Masks masks_of(const Input& input) {
-  Masks masks;
-  for (MovingPoints& moving : find_moving_points(input.views, input.camera, {}))
-    masks.push_back(std::move(moving.mask));
-  return masks;
-}
-
 /// How well the best of the poses explains the views once it is pulled onto them.
-double best_score(const Input& input, const Masks& masks, std::vector<Pose> poses) {
+double best_score(const Input& input, const SeenMotion& motion, std::vector<Pose> poses) {
   if (poses.empty() || input.views.size() < 2) return 0;
   CoarseSettings align;
   align.iterations = 12;
   align.reduction = 8;
   for (Pose& pose : poses) pose = coarse_align(input.views, input.camera, pose, align);
-  return std::ranges::max(scores_of(input, masks, poses));
+  return std::ranges::max(scores_of(input, motion, poses));
 }
 
-std::vector<Pose> searched(const Input& input) {
+std::vector<Pose> searched(const Input& input, const SeenMotion& motion) {
   StartSettings quick;
   quick.rotations = 100;
   quick.surface_points = 1500;
@@ -90,7 +82,7 @@ std::vector<Pose> searched(const Input& input) {
   quick.kept_fits = 12;
   quick.convincing = -1;
   std::vector<Pose> poses;
-  for (const StartHypothesis& start : find_starts(input.views, input.camera, quick)) {
+  for (const StartHypothesis& start : starts_from(motion, input.views, input.camera, quick)) {
     poses.push_back(start.T_base_sensor);
     if (poses.size() == 2) break;
   }
@@ -108,8 +100,8 @@ class Search {
         settings_(settings),
         deadline_(std::chrono::steady_clock::now() + settings.budget),
         as_it_came_(under({}, views, camera, settings.views)),
-        masks_(masks_of(as_it_came_)),
-        score_as_it_came_(best_score(as_it_came_, masks_, tried.T_base_sensor)) {
+        motion_(see_motion(as_it_came_.views, camera)),
+        score_as_it_came_(best_score(as_it_came_, motion_, tried.T_base_sensor)) {
     to_beat_ = std::max({settings.least_score, score_as_it_came_ + settings.least_gain,
                          score_as_it_came_ + settings.least_mended * (1 - score_as_it_came_)});
   }
@@ -141,9 +133,8 @@ class Search {
     if (score_ >= settings_.convincing || is_late()) return;
     const Input input = under(alternative, views_, camera_, settings_.views);
     const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
-    consider(
-        best_score(input, same_pixels ? masks_ : masks_of(input), poses.empty() ? searched(input) : poses),
-        alternative.reason);
+    const SeenMotion motion = same_pixels ? motion_ : see_motion(input.views, input.camera);
+    consider(best_score(input, motion, poses.empty() ? searched(input, motion) : poses), alternative.reason);
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
   void consider(double score, const Reason& reason) {
@@ -166,7 +157,7 @@ class Search {
   }
   bool something_moved() const {
     return std::ranges::any_of(
-        masks_, [](const auto& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
+        motion_.masks, [](const auto& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
   }
 
   std::span<const RegistrationView> views_;
@@ -175,7 +166,7 @@ class Search {
   const DiagnoseSettings& settings_;
   std::chrono::steady_clock::time_point deadline_;
   Input as_it_came_;
-  Masks masks_;  // of what moved, as it came
+  SeenMotion motion_;  // as it came
   double score_as_it_came_;
   double to_beat_ = 1, score_ = -1;
   std::optional<Reason> best_;

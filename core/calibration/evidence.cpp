@@ -120,7 +120,8 @@ ParameterMatrix priors() {
   sigma[kScale] = 0.005;
   sigma[kSine] = sigma[kCosine] = 0.004;
   sigma[kPeriod] = 0.08;
-  sigma[kContourShift] = 0.3;
+  sigma[kImageShift] = 0.3;
+  sigma[kDepthShift] = 2;
   sigma.tail<kMaxJointZeros>().setConstant(1e-3);
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
 }

@@ -29,7 +29,7 @@ struct VerdictSettings {
   /// this, and by more than the residuals' own rms ...
   double max_joint_pull_m = 0.0015;
   double max_view_seen_through = 0.25;  ///< ... or when so much of the robot is seen through in it,
-  double min_view_found = 0.6;          ///< ... or when less of it is found than this share of what is usual
+  double min_view_found = 0.4;          ///< ... or when less of it is found than this share of what is usual
   double max_views_at_odds = 0.2;       ///< share of the views; above: rejected, below: uncertain
   double min_link_coverage = 0.5;       ///< a link that is found less, and mostly seen through, is elsewhere
   std::size_t min_link_pixels = 60;     ///< fewer predicted pixels say nothing of a link

@@ -149,7 +149,7 @@ TEST_F(LoadConfig, OverrideWithoutValueIsRefused) {
   EXPECT_EQ(loaded.error().code, ConfigError::bad_override);
 }
 
-TEST_F(LoadConfig, ReadsJointsCouplingAndGuess) {
+TEST_F(LoadConfig, ReadsJointsCouplingGuessAndWorkspace) {
   const auto loaded = load(std::string(kSmallest) + R"(
 [robot.joints.joint_3]
 axis = 2
@@ -162,6 +162,7 @@ fy = 1
 cx = 1
 cy = 1
 guess = [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]
+workspace = { tray = [0.4, -0.2, 0.1] }
 )");
   ASSERT_TRUE(loaded) << loaded.error().message();
   const auto& joint = loaded->config.robot.joints.at("joint_3");
@@ -170,6 +171,13 @@ guess = [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]
   EXPECT_DOUBLE_EQ(joint.coupling.at("joint_2"), 1.0);
   ASSERT_TRUE(loaded->config.sensors.at("k").guess_T_base_sensor);
   EXPECT_DOUBLE_EQ(loaded->config.sensors.at("k").guess_T_base_sensor->translation().y(), 0.25);
+  EXPECT_DOUBLE_EQ(loaded->config.sensors.at("k").workspace.at("tray")[1], -0.2);
+}
+
+TEST_F(LoadConfig, WorkspacePointNeedsThreeNumbers) {
+  const auto text = failure(std::string(kSmallest) +
+                            "[sensors.k]\nfx = 1\nfy = 1\ncx = 1\ncy = 1\nworkspace = { tray = [1, 2] }\n");
+  EXPECT_NE(text.find("sensors.k.workspace.tray"), std::string::npos) << text;
 }
 
 TEST_F(LoadConfig, GuessInMillimetresIsRefused) {
