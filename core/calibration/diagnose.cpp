@@ -80,12 +80,12 @@ double best_score(const Input& input, const SeenMotion& motion, std::vector<Pose
 /// Of the joints there are many explanations: each is searched in less detail.
 std::vector<Pose> searched(const Input& input, const SeenMotion& motion, bool thoroughly) {
   StartSettings settings;
+  settings.convincing = -1;  // most explanations are wrong: no second look at what fits badly
   if (!thoroughly) {
-    settings.rotations = 150;
+    settings.rotations = 100;
     settings.surface_points = 1500;
     settings.voxel_m = 0.05;
-    settings.kept_fits = 24;
-    settings.convincing = -1;
+    settings.kept_fits = 16;
   }
   std::vector<Pose> poses;
   for (const StartHypothesis& start : starts_from(motion, input.views, input.camera, settings)) {
