@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 
 #include "core/calibration/alternatives.hpp"
 #include "core/calibration/free_joints.hpp"
@@ -43,11 +44,13 @@ Input under(const Alternative& alternative, std::span<const RegistrationView> vi
   std::vector<std::vector<double>> joints;
   for (const RegistrationView& view : views) joints.push_back(view.reported_joints);
   Input input{{}, alternative.camera(camera)};
+  const auto rays = std::make_shared<const PixelRays>(input.camera);
   for (std::size_t v = 0; v < views.size() && input.views.size() < count; ++v) {
     auto positions = alternative.joints(joints, v);
     if (positions.empty()) continue;
     RegistrationView view = views[v];
     view.image.clear();
+    view.rays = rays;
     view.reported_joints = std::move(positions);
     view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
     if (alternative.mirrored) mirror(view.depth_m, camera);
@@ -74,15 +77,18 @@ double best_score(const Input& input, const SeenMotion& motion, std::vector<Pose
   return std::ranges::max(scores_of(input, motion, poses));
 }
 
-std::vector<Pose> searched(const Input& input, const SeenMotion& motion) {
-  StartSettings quick;
-  quick.rotations = 100;
-  quick.surface_points = 1500;
-  quick.voxel_m = 0.05;
-  quick.kept_fits = 12;
-  quick.convincing = -1;
+/// Of the joints there are many explanations: each is searched in less detail.
+std::vector<Pose> searched(const Input& input, const SeenMotion& motion, bool thoroughly) {
+  StartSettings settings;
+  settings.convincing = -1;  // most explanations are wrong: no second look at what fits badly
+  if (!thoroughly) {
+    settings.rotations = 100;
+    settings.surface_points = 1500;
+    settings.voxel_m = 0.05;
+    settings.kept_fits = 16;
+  }
   std::vector<Pose> poses;
-  for (const StartHypothesis& start : starts_from(motion, input.views, input.camera, quick)) {
+  for (const StartHypothesis& start : starts_from(motion, input.views, input.camera, settings)) {
     poses.push_back(start.T_base_sensor);
     if (poses.size() == 2) break;
   }
@@ -134,7 +140,9 @@ class Search {
     const Input input = under(alternative, views_, camera_, settings_.views);
     const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
     const SeenMotion motion = same_pixels ? motion_ : see_motion(input.views, input.camera);
-    consider(best_score(input, motion, poses.empty() ? searched(input, motion) : poses), alternative.reason);
+    consider(
+        best_score(input, motion, poses.empty() ? searched(input, motion, alternative.of_sensor) : poses),
+        alternative.reason);
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
   void consider(double score, const Reason& reason) {

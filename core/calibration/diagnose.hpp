@@ -18,7 +18,7 @@ struct DiagnoseSettings {
   double least_mended = 0.4;  ///< ... and mend this share of what the input leaves open
   double convincing = 0.95;   ///< nothing further is tried when an explanation fits so well
   /// No explanation is begun after it: for computers that are very busy.
-  std::chrono::milliseconds budget{4000};
+  std::chrono::milliseconds budget{6000};
 };
 
 /// Where the search has been before it was rejected.
