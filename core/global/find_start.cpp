@@ -228,6 +228,7 @@ std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views
   const std::vector<FieldFit> fits = quick_fits(evidence, settings.rotations);
   std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
   // People who walk by can hide the truth among fits that explain them better: then all are looked at.
+  if (starts.empty()) return starts;  // what moves forms no group
   if (starts.front().score.value() < settings.convincing)
     starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()));
   return starts;
