@@ -8,11 +8,13 @@
 #include <iostream>
 
 #include "api/json/calibration_result_json.hpp"
+#include "api/json/next_posture_json.hpp"
 #include "core/calibration/calibrate.hpp"
 #include "core/calibration/model_views.hpp"
 #include "core/capture/pose_json.hpp"
 #include "core/paper/paper_error.hpp"
 #include "core/paper/region.hpp"
+#include "core/planning/next_posture.hpp"
 
 namespace calibrd {
 namespace {
@@ -84,6 +86,18 @@ Result<Loaded> load(const CalibrateOptions& options) {
   return Loaded{std::move(*robot), camera, std::move(*views), std::move(settings)};
 }
 
+/// Nothing without a pose; nor for the paper's method, which says nothing about its uncertainty.
+std::optional<PostureSuggestion> next_posture(const Loaded& input, const CalibrationResult& result,
+                                              double table_height_m) {
+  if (!result.T_base_sensor || input.settings.method == Method::paper) return std::nullopt;
+  std::vector<std::vector<double>> seen;
+  for (const View& view : input.views) seen.push_back(view.joint_positions_rad);
+  PlanningSettings settings;
+  settings.min_height_m = table_height_m;
+  return suggest_posture(VirtualCell(input.robot), input.camera, *result.T_base_sensor, result.covariance,
+                         seen, settings);
+}
+
 }  // namespace
 
 void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
@@ -109,6 +123,12 @@ void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
                   "Virtual measurement of the method paper: uniform (default), or three-sensors")
       ->check(CLI::IsMember({"uniform", "three-sensors"}));
   command.add_flag("--depth-only", options.depth_only, "Ignore the images of the recording");
+  auto* suggest =
+      command.add_flag("--suggest", options.suggest, "Also print the posture that would help most next");
+  command
+      .add_option("--table-height", options.table_height_m,
+                  "What --suggest suggests stays above this height in the base frame, m; default: 0")
+      ->needs(suggest);
   command.add_flag("--json", options.json, "Print JSON (always the case)");
 }
 
@@ -121,7 +141,11 @@ int run_calibrate(const CalibrateOptions& options) {
   }
   const std::chrono::duration<double, std::milli> load_time = std::chrono::steady_clock::now() - begin;
   const CalibrationResult result = calibrate(input->robot, input->camera, input->views, input->settings);
-  std::cout << api::calibration_result_json(result, load_time.count()) << '\n';
+  std::cout << (options.suggest
+                    ? api::calibration_and_next_posture_json(
+                          result, load_time.count(), next_posture(*input, result, options.table_height_m))
+                    : api::calibration_result_json(result, load_time.count()))
+            << '\n';
   return result.verdict == Verdict::accepted ? kAccepted : kNotAccepted;
 }
 

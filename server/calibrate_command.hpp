@@ -21,7 +21,9 @@ struct CalibrateOptions {
       roi;  ///< x0,y0,z0,x1,y1,z1 in the sensor frame, m; empty: around the robot. Paper's method only
   std::string sampling;  ///< uniform, three-sensors; empty: uniform. Paper's method only
   bool depth_only = false;
-  bool json = false;  ///< accepted for clarity's sake: the output is always JSON
+  bool suggest = false;       ///< also say where to move the robot next
+  double table_height_m = 0;  ///< base frame; what is suggested stays above it
+  bool json = false;          ///< accepted for clarity's sake: the output is always JSON
 };
 
 void add_calibrate_options(CLI::App& command, CalibrateOptions& options);

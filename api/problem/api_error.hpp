@@ -26,6 +26,7 @@ enum class ApiError {
   idempotency_conflict,
   pose_not_valid,
   no_pose,
+  no_posture,
   no_frame,
   no_joints,
   joints_stale,

@@ -11,6 +11,7 @@ Router make_routes(CellService& service) {
   add_sensor_routes(router, service);
   add_robot_routes(router, service);
   add_calibration_routes(router, service);
+  add_next_posture_routes(router, service);
   add_recording_routes(router, service);
   return router;
 }

@@ -35,6 +35,9 @@ class CellService {
   virtual Result<CalibrationReport> activate_calibration(std::string_view id) = 0;
   virtual Result<HistoryPage> history(const HistoryQuery& query) const = 0;
 
+  /// Where to move the robot next so that a calibration knows the sensor's pose best.
+  virtual Result<PostureSuggestion> next_posture(const NextPostureRequest& request) const = 0;
+
   /// Records postures of the live cell as a capture/1 folder, in a tar archive. Waits for the robot to hold
   /// still.
   virtual Result<CaptureArchive> record_capture(const CaptureRequest& request) = 0;

@@ -12,6 +12,7 @@
 #include "core/calibration/calibrate.hpp"
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/planning/next_posture.hpp"
 #include "core/sensing/images.hpp"
 
 namespace calibrd::api {
@@ -149,6 +150,11 @@ struct HistoryQuery {
 struct HistoryPage {
   std::vector<CalibrationReport> calibrations;  ///< newest first
   bool more = false;
+};
+
+struct NextPostureRequest {
+  std::string sensor_id;
+  double table_height_m = 0;  ///< base frame; moving links stay above it
 };
 
 struct CaptureRequest {

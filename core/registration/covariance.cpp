@@ -19,4 +19,12 @@ ParameterMatrix parameter_covariance(const ParameterMatrix& information, const N
   return axes * growth.asDiagonal() * axes.transpose();
 }
 
+double fall_by_joint_zeros(const ParameterMatrix& information, const JointZeros& zeros) {
+  const Eigen::MatrixXd coupling = information.bottomLeftCorner(kMaxJointZeros, kJointZeros);
+  const Eigen::MatrixXd others = information.topLeftCorner(kJointZeros, kJointZeros);
+  const Eigen::MatrixXd alone = information.bottomRightCorner(kMaxJointZeros, kMaxJointZeros) -
+                                coupling * others.ldlt().solve(coupling.transpose());
+  return zeros.dot(alone * zeros);
+}
+
 }  // namespace calibrd

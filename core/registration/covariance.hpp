@@ -10,4 +10,8 @@ namespace calibrd {
 /// model's covariance and the sandwich estimate from the scatter of clusters.
 ParameterMatrix parameter_covariance(const ParameterMatrix& information, const NormalEquations& equations);
 
+/// How far the cost falls by the joint zeros found, everything else solved for beside them: of chance alone
+/// about one per joint that the views show.
+double fall_by_joint_zeros(const ParameterMatrix& information, const JointZeros& zeros);
+
 }  // namespace calibrd

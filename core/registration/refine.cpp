@@ -10,6 +10,7 @@
 
 #include "core/registration/covariance.hpp"
 #include "core/registration/range_period.hpp"
+#include "core/registration/repeated_postures.hpp"
 #include "core/registration/reported_joints.hpp"
 #include "core/registration/view_sums.hpp"
 
@@ -33,7 +34,8 @@ constexpr int kFullSteps = 5;
 /// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
 /// errors.
 constexpr double kMinEdgeScatter = 0.5;
-/// Chance lets the cost fall by as much through seven joint zeros once in twenty times.
+/// Chance lets the cost fall by as much through seven joint zeros once in twenty times. Zeros of a robot that
+/// has none would only carry noise into the pose.
 constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
 /// simulated captures this much larger, squared, than the scatter of residuals alone says.
@@ -70,7 +72,7 @@ class Refiner {
     step(closing, 0);
     choose_period(closing);
     run_stage(closing);
-    if (zeros && !are_zeros_significant()) {
+    if (zeros && fall_by_joint_zeros(last_information_, result_.joint_zeros) < kSignificantFall) {
       closing.free_zeros = last.free_zeros = false;
       set_zeros(JointZeros::Zero());
       run_stage(closing);
@@ -229,18 +231,6 @@ class Refiner {
     for (RegistrationView& view : views_) view.apply_zeros(zeros);
   }
 
-  /// Whether the joint zeros explain more than chance would: how far the cost falls by them, everything else
-  /// solved for beside them. Zeros of a robot that has none would only carry noise into the pose.
-  bool are_zeros_significant() const {
-    const auto others = kJointZeros;
-    const Eigen::MatrixXd coupling = last_information_.bottomLeftCorner(kMaxJointZeros, others);
-    const Eigen::MatrixXd known = last_information_.topLeftCorner(others, others);
-    const Eigen::MatrixXd alone = last_information_.bottomRightCorner(kMaxJointZeros, kMaxJointZeros) -
-                                  coupling * known.ldlt().solve(coupling.transpose());
-    const double fall = result_.joint_zeros.dot(alone * result_.joint_zeros);
-    return fall > kSignificantFall;
-  }
-
   /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
   /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
   void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
@@ -274,7 +264,8 @@ class Refiner {
     published.leftCols<6>().setIdentity();
     published.rightCols<kMaxJointZeros>() =
         reported_joints_map(views_, predictions_, camera_, result_.T_base_sensor);
-    result_.covariance = kModelAllowance * published * covariance * published.transpose();
+    result_.covariance =
+        kModelAllowance * views_per_posture(views_) * published * covariance * published.transpose();
     result_.joint_zero_sigmas = covariance.diagonal().tail<kMaxJointZeros>().cwiseSqrt();
     result_.T_base_sensor =
         perturbed(result_.T_base_sensor, published.rightCols<kMaxJointZeros>() * result_.joint_zeros);

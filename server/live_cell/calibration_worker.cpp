@@ -29,6 +29,15 @@ Clock::time_point time_of_last(std::span<const View> views) {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(stamp));
 }
 
+/// What a result says of the pose, for choosing the next posture; the paper's method says too little.
+std::optional<PoseEvidence> evidence_of(const CalibrationResult& result, Method method,
+                                        std::span<const View> views) {
+  if (!result.T_base_sensor || method == Method::paper) return std::nullopt;
+  PoseEvidence evidence{*result.T_base_sensor, result.covariance, {}};
+  for (const View& view : views) evidence.postures.push_back(view.joint_positions_rad);
+  return evidence;
+}
+
 }  // namespace
 
 void CalibrationJobs::run() {
@@ -89,10 +98,13 @@ void CalibrationJobs::compute(const JobPointer& job) {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) return;  // the store calls it interrupted when it is opened again
   }
-  if (job->cancelled)
+  if (job->cancelled) {
     end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
-  else
-    end_computed(job, std::move(result), seen_at);
+    return;
+  }
+  auto evidence = evidence_of(result, job->report.method, views);
+  end_computed(job, std::move(result), seen_at);
+  if (evidence) job->sensor->set_evidence(*std::move(evidence));
 }
 
 CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<const View> views) {

@@ -18,6 +18,7 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
+      virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
       jobs_(
           store, estimator_.calibrate,
@@ -172,6 +173,20 @@ Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const
     if (!calibration.finished)
       if (auto live = jobs_.find(calibration.id)) calibration = *std::move(live);
   return page;
+}
+
+Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& request) const {
+  const auto entry = find(request.sensor_id);
+  if (!entry) return entry.error();
+  const auto evidence = (*entry)->sensor->evidence();
+  if (!evidence) return fail(ApiError::no_pose, request.sensor_id);
+  PlanningSettings planning;
+  planning.min_height_m = request.table_height_m;
+  planning.min_change_rad = settings_.jobs.collector.min_distance_rad;
+  auto suggestion = suggest_posture(virtual_cell_, (*entry)->setup.camera, evidence->T_base_sensor,
+                                    evidence->covariance, evidence->postures, planning);
+  if (!suggestion) return fail(ApiError::no_posture, request.sensor_id);
+  return *std::move(suggestion);
 }
 
 Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequest& request) {

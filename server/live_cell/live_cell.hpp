@@ -78,6 +78,7 @@ class LiveCell : public api::CellService {
   Result<api::CalibrationReport> cancel_calibration(std::string_view id) override;
   Result<api::CalibrationReport> activate_calibration(std::string_view id) override;
   Result<api::HistoryPage> history(const api::HistoryQuery& query) const override;
+  Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
 
@@ -105,6 +106,7 @@ class LiveCell : public api::CellService {
   std::atomic<bool> is_stopping_{false};
   const std::string robot_basis_;
   LiveRobot robot_;
+  const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   CalibrationJobs jobs_;                                                // last: its thread uses the others

@@ -168,6 +168,7 @@ void LiveSensor::tell_of_pose() {
 void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin) {
   const std::lock_guard lock(mutex_);
   known_ = std::move(known);
+  evidence_.reset();
   ++pose_number_;
   if (origin.drifted)
     watch_.set_drifted();
@@ -178,6 +179,17 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   else
     watch_.set_stored();
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
+}
+
+void LiveSensor::set_evidence(PoseEvidence evidence) {
+  const std::lock_guard lock(mutex_);
+  evidence_ = std::move(evidence);
+}
+
+std::optional<PoseEvidence> LiveSensor::evidence() const {
+  const std::lock_guard lock(mutex_);
+  if (evidence_ || !known_) return evidence_;
+  return PoseEvidence{*known_->result.T_base_sensor, known_->result.covariance, {}};
 }
 
 void LiveSensor::feed(std::shared_ptr<CollectTask> task) {

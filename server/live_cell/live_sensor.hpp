@@ -30,6 +30,13 @@ struct PoseOrigin {
   std::string objection;                     ///< why a stored one must not be used, whatever checks say
 };
 
+/// A pose that was found, accepted or uncertain, and from which postures.
+struct PoseEvidence {
+  Pose T_base_sensor;
+  Matrix6d covariance;                        ///< see perturbed()
+  std::vector<std::vector<double>> postures;  ///< position_names() order; empty: not known any more
+};
+
 struct LiveSensorSettings {
   std::string id;
   std::string basis;  ///< what poses are found with now: see CurrentCalibration
@@ -70,6 +77,11 @@ class LiveSensor {
 
   /// The pose being served. A stored one is unverified until a check agrees.
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
+
+  /// What the newest calibration has found; counts until another pose takes over.
+  void set_evidence(PoseEvidence evidence);
+  /// Without a calibration since the start: of the pose being served. Nothing: there is no pose.
+  std::optional<PoseEvidence> evidence() const;
 
   /// Feeds the task with views until it is complete or cancelled.
   void feed(std::shared_ptr<CollectTask> task);
@@ -112,6 +124,7 @@ class LiveSensor {
   std::array<std::uint64_t, kFrameVerdicts> counts_{};
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
+  std::optional<PoseEvidence> evidence_;
   Clock::time_point lost_at_;      // the last moment the source was away: frames before it prove nothing now
   std::uint64_t pose_number_ = 0;  // counts set_pose()
   struct Told {

@@ -20,6 +20,8 @@ class FakeCell : public CellService {
   std::function<Result<CaptureArchive>(const CaptureRequest&)> on_capture;
   CalibrationReport calibration_report;
   mutable HistoryQuery last_history;
+  PostureSuggestion suggestion;
+  mutable NextPostureRequest last_next_posture;
   std::string cancelled, activated;
 
   FakeCell() {
@@ -75,6 +77,11 @@ class FakeCell : public CellService {
   Result<HistoryPage> history(const HistoryQuery& query) const override {
     last_history = query;
     return of_sensor(query.sensor_id, HistoryPage{{calibration_report}, true});
+  }
+  Result<PostureSuggestion> next_posture(const NextPostureRequest& request) const override {
+    last_next_posture = request;
+    if (!pose_report.known) return fail(ApiError::no_pose, request.sensor_id);
+    return of_sensor(request.sensor_id, suggestion);
   }
   Result<CaptureArchive> record_capture(const CaptureRequest& request) override {
     return on_capture ? on_capture(request) : Result<CaptureArchive>(CaptureArchive{"a.tar", "tar bytes"});

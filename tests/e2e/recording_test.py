@@ -78,6 +78,16 @@ class Recording(CellTest):
             print(f"{result['verdict']}, {result['views']} views, off by {mm:.3f} mm, {mrad:.3f} mrad")
             self.assertEqual((result["verdict"], result["views"]), ("accepted", POSTURES))
             self.assertLess(max(mm, mrad), 3)
+        with self.subTest("where to move next"):
+            ended = self.calibrate("--suggest", "--table-height", "0.02")
+            answer = json.loads(ended.stdout)
+            suggested = answer["next_posture"]
+            self.assertCountEqual(suggested["joint_names"], json.loads(self.recorded)["robot"]["joint_names"])
+            self.assertEqual(len(suggested["positions_rad"]), len(suggested["joint_names"]))
+            self.assertLess(suggested["expected"]["sigma_position_m"], answer["sigma_position_m"])
+            self.assertLess(suggested["expected"]["sigma_rotation_rad"], answer["sigma_rotation_rad"])
+            self.assertIn("seen from the sensor", suggested["improves"])
+            self.assertEqual(self.calibrate("--table-height", "0.02").returncode, 2)
         with self.subTest("output that cannot be written"):
             for redirection in (">/dev/full", ">&-"):
                 ended = self.calibrate_into(redirection)

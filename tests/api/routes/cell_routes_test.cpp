@@ -67,6 +67,28 @@ TEST_F(CellRoutes, CaptureIsATarDownload) {
   EXPECT_EQ(ask("POST", "/api/v1/sensors/kinect2/captures", R"({"timeout_s": 0})").status, 400);
 }
 
+TEST_F(CellRoutes, NextPostureNamesJointsAndWhatToExpect) {
+  cell_.make_calibrated();
+  cell_.suggestion = {{"joint_s", "joint_l"}, {0.5, -0.25}, 0.0004, 0.0003, 9000, "pan: better"};
+  EXPECT_EQ(get("/api/v1/sensors/kinect2/next-posture?table_height_m=-0.5").status, 200);
+  EXPECT_EQ(body().at("joint_names").at(1), "joint_l");
+  EXPECT_EQ(body().at("positions_rad").at(1), -0.25);
+  EXPECT_EQ(body().at("expected").at("sigma_position_m"), 0.0004);
+  EXPECT_EQ(body().at("expected").at("sigma_rotation_rad"), 0.0003);
+  EXPECT_EQ(body().at("improves"), "pan: better");
+  EXPECT_EQ(cell_.last_next_posture.table_height_m, -0.5);
+  EXPECT_EQ(get("/api/v1/sensors/none/next-posture").status, 404);
+}
+
+TEST_F(CellRoutes, NextPostureWithoutAPoseOrOfABadTableIsRefused) {
+  EXPECT_EQ(get("/api/v1/sensors/kinect2/next-posture").status, 409);
+  EXPECT_EQ(code(), "no_pose");
+  for (const auto* bad : {"high", "", "1m", "nan", "11"}) {
+    EXPECT_EQ(get(std::string("/api/v1/sensors/kinect2/next-posture?table_height_m=") + bad).status, 400);
+    EXPECT_EQ(code(), "bad_query");
+  }
+}
+
 TEST_F(CellRoutes, CloudCarriesTheStampOfItsJoints) {
   cell_.cloud_report.frame = "base_link";
   cell_.cloud_report.points = {Eigen::Vector3f(1, 2, 3)};

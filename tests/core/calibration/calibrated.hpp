@@ -46,7 +46,8 @@ inline std::string described(const CalibrationResult& result) {
             std::to_string(1e3 * result.sigma_position_m) + " mm and " +
             std::to_string(1e3 * result.sigma_rotation_rad) + " mrad, coverage " +
             std::to_string(result.coverage) + ", zeros";
-    for (const JointZero& zero : result.joint_zeros) text += " " + std::to_string(1e3 * zero.zero);
+    for (const JointZero& zero : result.joint_zeros)
+      text.append(1, ' ').append(std::to_string(1e3 * zero.zero));
   }
   return text;
 }

@@ -77,5 +77,12 @@ TEST(Uncertainty, OfNothingKnownIsLarge) {
   EXPECT_GE(result.sigma_rotation_rad, 1);
 }
 
+TEST(Uncertainty, TheSameFrameAgainMakesNothingSurer) {
+  const View view = render_views(1)[0];
+  const CalibrationResult once = calibrated({view}), often = calibrated({view, view, view, view});
+  EXPECT_GT(often.sigma_position_m, 0.9 * once.sigma_position_m);
+  EXPECT_GT(often.sigma_rotation_rad, 0.9 * once.sigma_rotation_rad);
+}
+
 }  // namespace
 }  // namespace calibrd
