@@ -46,7 +46,7 @@ struct SensorSetup {
   CameraModel camera;
   Clock::duration latency{0};
   std::optional<Pose> guess_T_base_sensor;
-  std::vector<WorkspacePoint> workspace;  ///< where its calibrations tell their predicted error
+  std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.
