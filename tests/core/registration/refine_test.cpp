@@ -35,7 +35,8 @@ TEST(Refine, TellsTheSensorsNoiseFromTheExpectedOne) {
   noisy.noise = 3;
   const Refinement r = refined(2, noisy, true_T_base_sensor()), quiet = refined(2, {}, true_T_base_sensor());
   EXPECT_NEAR(r.sigma_factor / quiet.sigma_factor, 3, 0.4);
-  EXPECT_GT(r.covariance.trace(), 6 * quiet.covariance.trace());
+  // Nine times as much by range alone; the outline, found to half a pixel, knows nothing of the noise.
+  EXPECT_GT(r.covariance.trace(), 3.5 * quiet.covariance.trace());
 }
 
 TEST(Refine, EndsWhereItStartsWhenThatIsTheSolution) {
