@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "core/calibration/seen_motion.hpp"
+#include "core/global/find_start.hpp"
+#include "core/global/moving_points.hpp"
 #include "core/registration/coarse_align.hpp"
 
 namespace calibrd {
@@ -21,11 +22,11 @@ bool is_same(const Pose& a, const Pose& b) {
 
 /// Best first.
 std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> views, const CameraModel& camera,
-                                          const SeenMotion& motion, std::vector<Pose> poses) {
+                                          std::vector<Pose> poses) {
   CoarseSettings align;
   align.reduction = 8;
   for (Pose& pose : poses) pose = coarse_align(views, camera, pose, align);
-  const auto scores = render_scores(views, motion.masks, camera, poses, {6, 0.025});
+  const auto scores = render_scores(views, moving_masks(views, camera), camera, poses, {6, 0.025});
   std::vector<StartHypothesis> starts;
   for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
@@ -46,15 +47,14 @@ ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
 }  // namespace
 
 std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera) {
-  const SeenMotion motion = see_motion(views, camera);
-  const auto starts = starts_from(motion, views, camera, {});
+  const auto starts = find_starts(views, camera, {});
   if (starts.empty()) return std::nullopt;
   const ChosenStart chosen = first_of(starts);
   if (!chosen.margin || *chosen.margin > kClear) return chosen;
   std::vector<Pose> poses;
   for (const StartHypothesis& start : starts)
     if (poses.size() < kSeconds) poses.push_back(start.T_base_sensor);
-  return first_of(judged_finer(views, camera, motion, std::move(poses)));
+  return first_of(judged_finer(views, camera, std::move(poses)));
 }
 
 }  // namespace calibrd

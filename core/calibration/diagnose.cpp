@@ -8,7 +8,8 @@
 
 #include "core/calibration/alternatives.hpp"
 #include "core/calibration/free_joints.hpp"
-#include "core/calibration/seen_motion.hpp"
+#include "core/global/find_start.hpp"
+#include "core/global/moving_points.hpp"
 #include "core/registration/coarse_align.hpp"
 
 namespace calibrd {
@@ -59,26 +60,26 @@ Input under(const Alternative& alternative, std::span<const RegistrationView> vi
   return input;
 }
 
-std::vector<double> scores_of(const Input& input, const SeenMotion& motion, std::span<const Pose> poses) {
+std::vector<double> scores_of(const Input& input, std::span<const PixelMask> moving,
+                              std::span<const Pose> poses) {
   std::vector<double> values;
-  for (const RenderScore& score :
-       render_scores(input.views, motion.masks, input.camera, poses, {6, kTolerance_m}))
+  for (const RenderScore& score : render_scores(input.views, moving, input.camera, poses, {6, kTolerance_m}))
     values.push_back(score.value());
   return values;
 }
 
 /// How well the best of the poses explains the views once it is pulled onto them.
-double best_score(const Input& input, const SeenMotion& motion, std::vector<Pose> poses) {
+double best_score(const Input& input, std::span<const PixelMask> moving, std::vector<Pose> poses) {
   if (poses.empty() || input.views.size() < 2) return 0;
   CoarseSettings align;
   align.iterations = 12;
   align.reduction = 8;
   for (Pose& pose : poses) pose = coarse_align(input.views, input.camera, pose, align);
-  return std::ranges::max(scores_of(input, motion, poses));
+  return std::ranges::max(scores_of(input, moving, poses));
 }
 
 /// Of the joints there are many explanations: each is searched in less detail.
-std::vector<Pose> searched(const Input& input, const SeenMotion& motion, bool thoroughly) {
+std::vector<Pose> searched(const Input& input, bool thoroughly) {
   StartSettings settings;
   settings.convincing = -1;  // most explanations are wrong: no second look at what fits badly
   if (!thoroughly) {
@@ -88,7 +89,7 @@ std::vector<Pose> searched(const Input& input, const SeenMotion& motion, bool th
     settings.kept_fits = 16;
   }
   std::vector<Pose> poses;
-  for (const StartHypothesis& start : starts_from(motion, input.views, input.camera, settings)) {
+  for (const StartHypothesis& start : find_starts(input.views, input.camera, settings)) {
     poses.push_back(start.T_base_sensor);
     if (poses.size() == 2) break;
   }
@@ -106,8 +107,8 @@ class Search {
         settings_(settings),
         deadline_(std::chrono::steady_clock::now() + settings.budget),
         as_it_came_(under({}, views, camera, settings.views)),
-        motion_(see_motion(as_it_came_.views, camera)),
-        score_as_it_came_(best_score(as_it_came_, motion_, tried.T_base_sensor)) {
+        moving_(moving_masks(as_it_came_.views, camera)),
+        score_as_it_came_(best_score(as_it_came_, moving_, tried.T_base_sensor)) {
     to_beat_ = std::max({settings.least_score, score_as_it_came_ + settings.least_gain,
                          score_as_it_came_ + settings.least_mended * (1 - score_as_it_came_)});
   }
@@ -139,10 +140,9 @@ class Search {
     if (score_ >= settings_.convincing || is_late()) return;
     const Input input = under(alternative, views_, camera_, settings_.views);
     const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
-    const SeenMotion motion = same_pixels ? motion_ : see_motion(input.views, input.camera);
-    consider(
-        best_score(input, motion, poses.empty() ? searched(input, motion, alternative.of_sensor) : poses),
-        alternative.reason);
+    const auto moving = same_pixels ? moving_ : moving_masks(input.views, input.camera);
+    consider(best_score(input, moving, poses.empty() ? searched(input, alternative.of_sensor) : poses),
+             alternative.reason);
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
   void consider(double score, const Reason& reason) {
@@ -165,7 +165,7 @@ class Search {
   }
   bool something_moved() const {
     return std::ranges::any_of(
-        motion_.masks, [](const auto& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
+        moving_, [](const PixelMask& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
   }
 
   std::span<const RegistrationView> views_;
@@ -174,7 +174,7 @@ class Search {
   const DiagnoseSettings& settings_;
   std::chrono::steady_clock::time_point deadline_;
   Input as_it_came_;
-  SeenMotion motion_;  // as it came
+  std::vector<PixelMask> moving_;  // as it came
   double score_as_it_came_;
   double to_beat_ = 1, score_ = -1;
   std::optional<Reason> best_;

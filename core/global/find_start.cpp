@@ -23,6 +23,7 @@ constexpr std::size_t kMinPoints = 8;  // per view: fewer say nothing of a shape
 /// What the views that show enough motion say, ready for fitting.
 struct Evidence {
   std::vector<MovingPoints> moving;
+  std::vector<PixelMask> masks;  // of `moving`
   std::vector<PosedSurface> surfaces;
   std::vector<std::optional<DistanceField>> fields;
   std::vector<PostureEvidence> postures;
@@ -33,6 +34,7 @@ Evidence gather(std::span<const RegistrationView> views, const CameraModel& came
                 const StartSettings& settings) {
   Evidence evidence;
   evidence.moving = find_moving_points(views, camera, {});
+  for (MovingPoints& moving : evidence.moving) evidence.masks.push_back(std::move(moving.mask));
   evidence.surfaces = sample_moving_surface(views, settings.surface_points);
   evidence.fields.resize(views.size());
   const auto is_usable = [&](std::size_t v) {
@@ -176,9 +178,7 @@ std::vector<FieldFit> quick_fits(const Evidence& evidence, std::size_t rotations
 
 std::vector<StartHypothesis> ranked(std::span<const RegistrationView> views, const CameraModel& camera,
                                     const Evidence& evidence, std::span<const Pose> poses) {
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (const MovingPoints& moving : evidence.moving) masks.push_back(moving.mask);
-  const std::vector<RenderScore> scores = render_scores(views, masks, camera, poses, {});
+  const std::vector<RenderScore> scores = render_scores(views, evidence.masks, camera, poses, {});
   std::vector<StartHypothesis> starts;
   for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
@@ -227,8 +227,8 @@ std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views
   if (evidence.postures.empty()) return {};
   const std::vector<FieldFit> fits = quick_fits(evidence, settings.rotations);
   std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
-  // People who walk by can hide the truth among fits that explain them better: then all are looked at.
   if (starts.empty()) return starts;  // what moves forms no group
+  // People who walk by can hide the truth among fits that explain them better: then all are looked at.
   if (starts.front().score.value() < settings.convincing)
     starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()));
   return starts;

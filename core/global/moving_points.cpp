@@ -148,4 +148,10 @@ std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> v
   return moving;
 }
 
+std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera) {
+  std::vector<PixelMask> masks;
+  for (MovingPoints& moving : find_moving_points(views, camera, {})) masks.push_back(std::move(moving.mask));
+  return masks;
+}
+
 }  // namespace calibrd

@@ -15,10 +15,13 @@ struct MovingSettings {
   double voxel_m = 0.05;         ///< one point is kept per cube of this side
 };
 
+/// Per pixel, row-major: 1 = it shows what moved.
+using PixelMask = std::vector<std::uint8_t>;
+
 /// What of one view is not there in other views: the robot, what it carries, and what else moves.
 struct MovingPoints {
   std::vector<Eigen::Vector3f> points;  ///< sensor frame, m, thinned evenly
-  std::vector<std::uint8_t> mask;       ///< per pixel, 1 = moving
+  PixelMask mask;
 };
 
 /// Finds what moved between the views by comparing each pixel with the same pixel of the other views: the
@@ -27,5 +30,8 @@ struct MovingPoints {
 /// model nor a mask. Two views or more; fewer give nothing.
 std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
                                              const CameraModel& camera, const MovingSettings& settings);
+
+/// The masks of find_moving_points() alone, one per view.
+std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera);
 
 }  // namespace calibrd

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/global/moving_points.hpp"
 #include "tests/core/registration/scene.hpp"
 
 namespace calibrd {
@@ -64,6 +65,27 @@ TEST(FindStart, SaysNothingWhenNothingMoves) {
   EXPECT_TRUE(starts_of(render_views(1, scene)).empty());
   const View still = render_views(1, scene)[0];
   EXPECT_TRUE(starts_of(std::vector<View>{still, still, still}).empty());
+}
+
+/// A wall with specks before it, each alone and elsewhere in each view.
+std::vector<View> views_of_specks(std::size_t count) {
+  std::vector<View> views = render_views(count);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    DepthImage& depth = views[v].depth;
+    const auto raw = [&](double z_m) { return static_cast<std::uint16_t>(z_m / depth.scale_m); };
+    std::ranges::fill(depth.raw, raw(1.5));
+    for (int y = 40; y + 12 < depth.height; y += 80)
+      for (int x = 40 + 20 * static_cast<int>(v); x + 12 < depth.width; x += 80)
+        for (int k = 0; k < 144; ++k) depth.raw[depth.index(x + k % 12, y + k / 12)] = raw(1.2);
+  }
+  return views;
+}
+
+TEST(FindStart, SaysNothingWhenWhatMovesFormsNoGroup) {
+  const auto views = prepare_views(VirtualCell(test_arm()), ideal_kinect2(), views_of_specks(4), {});
+  for (const MovingPoints& moving : find_moving_points(views, ideal_kinect2(), {}))
+    EXPECT_GT(moving.points.size(), 8U);  // there is motion, but none of a robot
+  EXPECT_TRUE(find_starts(views, ideal_kinect2(), {}).empty());
 }
 
 TEST(RenderScores, FallWhenTheSensorLooksThroughTheRobot) {
