@@ -58,7 +58,7 @@ std::vector<SurfaceTally> tally_links(const RegistrationView& view, const Virtua
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       if (prediction.link[i] < 0 || is_near_rim(prediction, x, y)) continue;
-      const Eigen::Vector3f d = camera.ray(x, y).cast<float>();
+      const Eigen::Vector3f d = view.rays->at(x, y).cast<float>();
       if (-prediction.normal[i].dot(d) < kMinCosine * d.norm()) continue;
       SurfaceTally& tally = tallies[static_cast<std::size_t>(prediction.link[i])];
       ++tally.predicted;
@@ -70,18 +70,18 @@ std::vector<SurfaceTally> tally_links(const RegistrationView& view, const Virtua
 }
 
 /// What one view alone says of the parameters, sums and samples.
-struct ViewSums {
+struct OneViewSums {
   NormalEquations equations;
   std::vector<RangeSample> samples;
 };
 
-ViewSums sums_of(const RegistrationView& view, const VirtualMeasurement& prediction,
-                 const CameraModel& camera, const Pose& T_base_sensor, const Refinement& refined) {
+OneViewSums sums_of(const RegistrationView& view, const VirtualMeasurement& prediction,
+                    const CameraModel& camera, const Pose& T_base_sensor, const Refinement& refined) {
   RangeSettings settings;
   settings.kernel_m = kReach_m;
   settings.sigma_factor = refined.sigma_factor;
   settings.stride = 3;
-  ViewSums sums;
+  OneViewSums sums;
   RangeTally tally;
   add_range_residuals(view, prediction, camera, T_base_sensor, refined.correction, settings, sums.equations,
                       tally, &sums.samples);
@@ -95,7 +95,7 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-double joint_pull_m(const ViewSums& sums) {
+double joint_pull_m(const OneViewSums& sums) {
   constexpr double kPrior_rad = 0.05;
   using Joints = Eigen::Matrix<double, kMaxJointZeros, 1>;
   using JointMatrix = Eigen::Matrix<double, kMaxJointZeros, kMaxJointZeros>;
@@ -128,16 +128,16 @@ ParameterMatrix priors() {
 
 /// One Gauss-Newton step on all views but one, from the common solution, and the residuals it leaves in the
 /// one left out.
-double held_out_residual_m(const std::vector<ViewSums>& views, double correlation) {
+double held_out_residual_m(const std::vector<OneViewSums>& views, double correlation) {
   ParameterMatrix information = priors();
   ParameterVector gradient = ParameterVector::Zero();
-  for (const ViewSums& view : views) {
+  for (const OneViewSums& view : views) {
     information +=
         ParameterMatrix(view.equations.information().selfadjointView<Eigen::Lower>()) / correlation;
     gradient += view.equations.gradient() / correlation;
   }
   std::vector<float> residuals;
-  for (const ViewSums& view : views) {
+  for (const OneViewSums& view : views) {
     const ParameterMatrix own = view.equations.information().selfadjointView<Eigen::Lower>();
     const ParameterVector step = ParameterMatrix(information - own / correlation)
                                      .ldlt()
@@ -194,7 +194,7 @@ Evidence gather_evidence(std::span<const RegistrationView> views, const CameraMo
   const Pose T_base_sensor = pose_of_true_base(views, camera, refined);
   const auto predictions = predict(views, camera, T_base_sensor);
   std::vector<std::vector<SurfaceTally>> tallies(views.size());
-  std::vector<ViewSums> sums(views.size());
+  std::vector<OneViewSums> sums(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
     tallies[v] = tally_links(views[v], predictions[v], camera, refined);
     sums[v] = sums_of(views[v], predictions[v], camera, T_base_sensor, refined);

@@ -59,7 +59,7 @@ std::optional<ContourPoint> locate(const RegistrationView& view, const CameraMod
   return ContourPoint{pixel, outward, inside_depth * camera.ray(pixel.x(), pixel.y())};
 }
 
-Observation observe(const RegistrationView& view, int link, const ContourPoint& point, const Edge& edge,
+Observation observe(const RegistrationView& view, const ContourPoint& point, const Edge& edge,
                     const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings) {
   Observation o;
   o.residual = edge.distance_px - settings.shift_px;
@@ -74,7 +74,7 @@ Observation observe(const RegistrationView& view, int link, const ContourPoint& 
   o.jacobian.head<6>() << u_base.cross(a), a;
   o.jacobian[settings.source == EdgeSource::image ? kImageShift : kDepthShift] = 1;
   o.jacobian.tail<kMaxJointZeros>() =
-      -view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * a;
+      -view.axes.derivative(point.link, T_base_sensor.translation() + u_base).transpose() * a;
   return o;
 }
 
@@ -103,32 +103,43 @@ void ContourTally::merge(const ContourTally& other) {
   whitened.insert(whitened.end(), other.whitened.begin(), other.whitened.end());
 }
 
-void add_contour_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
-                           const CameraModel& camera, const Pose& T_base_sensor,
-                           const ContourSettings& settings, NormalEquations& equations, ContourTally& tally) {
-  if (settings.source == EdgeSource::image && view.image.empty()) return;
+std::vector<ContourPoint> find_contour(const RegistrationView& view, const VirtualMeasurement& prediction,
+                                       const CameraModel& camera, const Pose& T_base_sensor, int stride) {
   const int blocks_per_row = camera.width / kBlockSide + 1;
+  std::vector<ContourPoint> contour;
   for (int y = kMargin; y + kMargin < camera.height; ++y) {
     for (int x = kMargin; x + kMargin < camera.width; ++x) {
-      if (!is_contour(prediction, x, y) || (x + y) % settings.stride != 0) continue;
+      if (!is_contour(prediction, x, y) || (x + y) % stride != 0) continue;
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
       const float z = prediction.depth_m[i];
       if (view.depth_m[i] > 0 && view.depth_m[i] < z - kOccluder_m) continue;
       const auto outward = outward_normal(prediction, x, y, z);
       if (!outward) continue;
-      const auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
+      auto point = locate(view, camera, T_base_sensor, x, y, z, *outward);
       if (!point) continue;
-      ++tally.predicted;
-      const auto edge = find_edge(view, camera, T_base_sensor, *point, settings);
-      if (!edge) continue;
-      const Observation o = observe(view, prediction.link[i], *point, *edge, camera, T_base_sensor, settings);
-      if (o.robust_weight <= 0) continue;
-      ++tally.found;
-      tally.residuals_px.push_back(static_cast<float>(o.residual));
-      tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
-      equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
+      point->link = prediction.link[i];
+      point->cluster = static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide);
+      contour.push_back(*point);
     }
+  }
+  return contour;
+}
+
+void add_contour_residuals(const RegistrationView& view, std::span<const ContourPoint> contour,
+                           const CameraModel& camera, const Pose& T_base_sensor,
+                           const ContourSettings& settings, NormalEquations& equations, ContourTally& tally) {
+  if (settings.search_px <= 0 || (settings.source == EdgeSource::image && view.image.empty())) return;
+  tally.predicted += contour.size();
+  for (const ContourPoint& point : contour) {
+    const auto edge = find_edge(view, camera, T_base_sensor, point, settings);
+    if (!edge) continue;
+    const Observation o = observe(view, point, *edge, camera, T_base_sensor, settings);
+    if (o.robust_weight <= 0) continue;
+    ++tally.found;
+    tally.residuals_px.push_back(static_cast<float>(o.residual));
+    tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
+    equations.add(o, point.cluster);
   }
 }
 

@@ -13,13 +13,6 @@ inline bool beyond(float depth_m, float rim_depth_m) {
   return depth_m <= 0 || depth_m > rim_depth_m + kContourStep_m;
 }
 
-/// A place on the robot's predicted occluding contour.
-struct ContourPoint {
-  Eigen::Vector2d pixel;     ///< to a fraction of a pixel
-  Eigen::Vector2d outward;   ///< unit normal in the image
-  Eigen::Vector3d p_sensor;  ///< on the robot, just inside (m, sensor frame)
-};
-
 /// Where an image edge lies (px along the normal from the predicted contour), and how sure that is.
 struct Edge {
   double distance_px;

@@ -93,7 +93,7 @@ class Refiner {
     settings.range = range_settings(stage);
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
       settings.contour[k] = contour_settings(stage, kEdgeSources[k]);
-    settings.with_contours = stage.contour_search_px > 0;
+    settings.contour_stride = stage.contour_search_px > 0 ? stage.stride + 2 : 0;
     settings.keep_samples = keep_samples;
     return sum_views(views_, predictions_, camera_, result_.T_base_sensor, result_.correction, settings);
   }
@@ -101,12 +101,12 @@ class Refiner {
   ContourSettings contour_settings(const Stage& stage, EdgeSource source) const {
     ContourSettings contour;
     contour.source = source;
-    contour.search_px = contour.kernel_px = stage.contour_search_px;
+    const bool used = source == EdgeSource::image || settings_.use_depth_outline;
+    contour.search_px = contour.kernel_px = used ? stage.contour_search_px : 0;
     // Once profiles are fitted, what lies several sigmas away is another edge.
     const double sigma_px = edge_noise_[static_cast<std::size_t>(source)].sigma_px;
     if (stage.fit_profile)
       contour.kernel_px = std::clamp(kKernelSigmas * sigma_px, 0.7, stage.contour_search_px);
-    contour.stride = stage.stride + 2;
     contour.fit_profile = stage.fit_profile;
     contour.shift_px = source == EdgeSource::image ? result_.image_shift_px : result_.depth_shift_px;
     return contour;

@@ -19,6 +19,7 @@ struct RefineSettings {
   double image_shift_prior_px = 0.3;
   double depth_shift_prior_px = 2;  ///< stereo fattens what stands in front, time of flight frays it
   double joint_zero_prior = 1e-3;   ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
+  bool use_depth_outline = true;    ///< false: range alone, and images where there are any
   int final_iterations = 12;
   /// A step this small against the uncertainty of the result ends the iteration.
   double convergence_sigmas = 0.15;

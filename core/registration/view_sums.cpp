@@ -28,9 +28,11 @@ ViewSums sum_views(std::span<const RegistrationView> views, std::span<VirtualMea
     ViewSums& sums = per_view[v];
     add_range_residuals(views[v], predictions[v], camera, T_base_sensor, correction, settings.range,
                         sums.range, sums.range_tally, settings.keep_samples ? &sums.samples : nullptr);
-    if (!settings.with_contours) return;
+    if (settings.contour_stride == 0) return;
+    const auto contour =
+        find_contour(views[v], predictions[v], camera, T_base_sensor, settings.contour_stride);
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
-      add_contour_residuals(views[v], predictions[v], camera, T_base_sensor, settings.contour[k],
+      add_contour_residuals(views[v], contour, camera, T_base_sensor, settings.contour[k],
                             sums.contour[k].equations, sums.contour[k].tally);
   });
   ViewSums total;

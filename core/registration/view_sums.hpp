@@ -30,7 +30,7 @@ struct ViewSums {
 struct ViewSumSettings {
   RangeSettings range;
   std::array<ContourSettings, kEdgeSources.size()> contour;  ///< by EdgeSource
-  bool with_contours = false;
+  int contour_stride = 0;                                    ///< see find_contour(); 0: no contours
   bool keep_samples = false;
 };
 

@@ -72,11 +72,11 @@ TEST_P(ContourJacobian, EqualsTheSlopeOfTheRenderedOutline) {
     const double edge_px = board.edge(T_base_sensor, place);
     const RegistrationView view = view_with_one_step(board, place, edge_px + kEdgeOutside_px);
     ContourSettings settings;
-    settings.stride = 1;
     NormalEquations equations;
     ContourTally tally;
-    add_contour_residuals(view, measured(board.cell, board.camera, T_base_sensor), board.camera,
-                          T_base_sensor, settings, equations, tally);
+    const auto contour =
+        find_contour(view, measured(board.cell, board.camera, T_base_sensor), board.camera, T_base_sensor, 1);
+    add_contour_residuals(view, contour, board.camera, T_base_sensor, settings, equations, tally);
     ASSERT_EQ(tally.found, 1U) << "of " << tally.predicted;
     const ParameterMatrix information = equations.information().selfadjointView<Eigen::Lower>();
     const double weight = information(kImageShift, kImageShift);  // w J Jᵀ, where J is 1 for the shift
@@ -110,8 +110,9 @@ NormalEquations contour_sums(std::span<const RegistrationView> views, const Came
   NormalEquations sums;
   for (const RegistrationView& view : views) {
     NormalEquations of_view;
-    add_contour_residuals(view, measured(view.cell, camera, T_base_sensor), camera, T_base_sensor, settings,
-                          of_view, tally);
+    const auto contour =
+        find_contour(view, measured(view.cell, camera, T_base_sensor), camera, T_base_sensor, 2);
+    add_contour_residuals(view, contour, camera, T_base_sensor, settings, of_view, tally);
     sums.merge(of_view);
   }
   return sums;

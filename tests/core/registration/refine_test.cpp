@@ -33,10 +33,21 @@ TEST(Refine, FromACentimetreOffReachesTheTruth) {
 TEST(Refine, TellsTheSensorsNoiseFromTheExpectedOne) {
   SceneSettings noisy;
   noisy.noise = 3;
-  const Refinement r = refined(2, noisy, true_T_base_sensor()), quiet = refined(2, {}, true_T_base_sensor());
+  RefineSettings range_alone;  // the outline's noise does not grow with that of the range
+  range_alone.use_depth_outline = false;
+  const Refinement r = refined(2, noisy, true_T_base_sensor(), range_alone),
+                   quiet = refined(2, {}, true_T_base_sensor(), range_alone);
   EXPECT_NEAR(r.sigma_factor / quiet.sigma_factor, 3, 0.4);
-  // Nine times as much by range alone; the outline, found to half a pixel, knows nothing of the noise.
-  EXPECT_GT(r.covariance.trace(), 3.5 * quiet.covariance.trace());
+  EXPECT_GT(r.covariance.trace(), 6 * quiet.covariance.trace());
+}
+
+TEST(Refine, DepthOutlineAddsToWhatRangeAloneSays) {
+  RefineSettings range_alone;
+  range_alone.use_depth_outline = false;
+  const Refinement with = refined(2, {}, true_T_base_sensor()),
+                   without = refined(2, {}, true_T_base_sensor(), range_alone);
+  EXPECT_LT(with.covariance.trace(), 0.9 * without.covariance.trace());
+  EXPECT_EQ(without.depth_contour.found, 0U);
 }
 
 TEST(Refine, EndsWhereItStartsWhenThatIsTheSolution) {
