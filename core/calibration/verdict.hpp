@@ -15,8 +15,8 @@ struct VerdictSettings {
   double max_seen_through = 0.15;   ///< share through which the sensor looks into the space behind the robot
   double min_contour_found = 0.35;  ///< share of contour points with an image edge; asked only with images
   std::size_t min_pixels = 1500;    ///< robot pixels over all views
-  double max_sigma_position_m = 0.0035;
-  double max_sigma_rotation_rad = 0.0035;
+  double max_sigma_position_m = 0.003;
+  double max_sigma_rotation_rad = 0.003;
   double max_residual_rms_m = 0.02;
   double max_offset_m = 0.06;  ///< a range offset beyond this is no sensor's: intrinsics or model are wrong
   double max_scale_error = 0.015;  ///< likewise of the range scale

@@ -84,6 +84,23 @@ TEST(CalibrateFrom, RobotOutOfViewIsNotAccepted) {
   }
 }
 
+TEST(CalibrateFrom, RobotAtThePicturesBorderIsRightOrNotAccepted) {
+  SceneSettings scene;
+  scene.clutter = true;
+  Pose aside = true_T_base_sensor();
+  aside.linear() = aside.linear() * exp_so3({0, 0.7, 0});  // little of the robot is left in the picture
+  std::vector<View> views;
+  for (const auto& joints : postures(2)) views.push_back(render_view(joints, aside, scene));
+  for (const Pose& guess : {aside, true_T_base_sensor()}) {
+    const CalibrationResult result = calibrated(views, scene, guess);
+    if (result.verdict != Verdict::accepted) continue;
+    ASSERT_TRUE(result.T_base_sensor);
+    const Vector6d error = difference(aside, *result.T_base_sensor);
+    EXPECT_LT(error.tail<3>().norm(), 3e-3) << described(result);
+    EXPECT_LT(error.head<3>().norm(), 3e-3) << described(result);
+  }
+}
+
 TEST(CalibrateFrom, EmptySpaceWhereTheRobotShouldBeIsRejected) {
   SceneSettings scene;
   scene.clutter = true;

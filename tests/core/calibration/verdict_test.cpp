@@ -39,35 +39,29 @@ TEST(Verdict, SoundRefinementIsAcceptedWithItsPose) {
   EXPECT_NEAR(result.coverage, 0.93, 1e-9);
 }
 
-TEST(Verdict, RobotSeenThroughIsRejectedWithoutAPose) {
+struct Fault {
+  const char* code;
+  void (*raise)(Refinement&);
+};
+
+void PrintTo(const Fault& value, std::ostream* out) { *out << value.code; }
+
+class VerdictFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(VerdictFault, RejectsWithoutAPose) {
   Refinement r = sound();
-  r.range.seen_through = 4000;
-  expect_rejected(judged(r), "free_space_violation");
+  GetParam().raise(r);
+  expect_rejected(judged(r), GetParam().code);
 }
 
-TEST(Verdict, TooFewPixelsAreRejected) {
-  Refinement r = sound();
-  r.range = {100, 100, 100, 0, 0, {}};
-  expect_rejected(judged(r), "too_few_pixels");
-}
-
-TEST(Verdict, RobotNotFoundIsRejected) {
-  Refinement r = sound();
-  r.range.agreeing = 1000;
-  expect_rejected(judged(r), "robot_not_found");
-}
-
-TEST(Verdict, LargeResidualIsRejected) {
-  Refinement r = sound();
-  r.residual_rms_m = 0.05;
-  expect_rejected(judged(r), "large_residual");
-}
-
-TEST(Verdict, OutlineWithoutEdgesIsRejected) {
-  Refinement r = sound();
-  r.contour.found = 20;
-  expect_rejected(judged(r), "contour_not_found");
-}
+INSTANTIATE_TEST_SUITE_P(
+    , VerdictFault,
+    testing::Values(Fault{"free_space_violation", [](Refinement& r) { r.range.seen_through = 4000; }},
+                    Fault{"too_few_pixels", [](Refinement& r) { r.range = {100, 100, 100, 0, 0, {}}; }},
+                    Fault{"robot_not_found", [](Refinement& r) { r.range.agreeing = 1000; }},
+                    Fault{"large_residual", [](Refinement& r) { r.residual_rms_m = 0.05; }},
+                    Fault{"contour_not_found", [](Refinement& r) { r.contour.found = 20; }}),
+    [](const auto& test) { return test.param.code; });
 
 TEST(Verdict, OutlineThatWasNotLookedForIsNoReason) {
   Refinement r = sound();
