@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robot and sensor come, go and come back; the daemon lives, says what is wrong, and takes them up again."""
 
+import re
 import unittest
 
 from cell import SENSOR, CellTest, free_port, wait_until
@@ -101,7 +102,12 @@ class Faults(CellTest):
 
     def test_the_wrong_byte_order_is_named(self):
         daemon = self.serve(self.simulate(), "robot.byte_order=little").wait_alive()
-        self.assertRegex(self.expect_robot(daemon, False)["reason"], "byte.order|big")
+        # Until the first frame is in, the reason is that the link is being made.
+        wait_until("the byte order is named", lambda: self.names_byte_order(self.expect_robot(daemon, False)))
+
+    @staticmethod
+    def names_byte_order(robot: dict) -> bool:
+        return bool(re.search("byte.order|big", robot["reason"]))
 
     def test_a_calibration_without_a_robot_fails_and_says_why(self):
         simulator = self.simulate()
