@@ -36,8 +36,9 @@ constexpr int kFullMoves = 3;
 /// has none would only carry noise into the pose.
 constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
-/// simulated captures this much larger, squared, than the scatter of residuals alone says.
-constexpr double kModelAllowance = 1.25;
+/// simulated captures this much larger, squared, than the scatter of residuals alone says. Part of it is
+/// common to all pixels of a view and averages over views only.
+constexpr double kModelAllowance = 1.25, kModelAllowanceOfOneView = 0.3;
 
 class Refiner {
  public:
@@ -253,8 +254,9 @@ class Refiner {
     published.leftCols<6>().setIdentity();
     published.rightCols<kMaxJointZeros>() =
         reported_joints_map(views_, predictions_, camera_, result_.T_base_sensor);
+    const double allowance = kModelAllowance + kModelAllowanceOfOneView / static_cast<double>(views_.size());
     result_.covariance =
-        kModelAllowance * views_per_posture(views_) * published * covariance * published.transpose();
+        allowance * views_per_posture(views_) * published * covariance * published.transpose();
     result_.joint_zero_sigmas = covariance.diagonal().tail<kMaxJointZeros>().cwiseSqrt();
     result_.T_base_sensor =
         perturbed(result_.T_base_sensor, published.rightCols<kMaxJointZeros>() * result_.joint_zeros);
