@@ -162,6 +162,14 @@ void read_reasons(const json::object& object, CalibrationResult& result) {
       result.reasons.push_back({text_or(*entry, "code", ""), text_or(*entry, "text", "")});
 }
 
+json::array hypotheses_json(const std::vector<Hypothesis>& hypotheses) {
+  json::array list;
+  for (const Hypothesis& hypothesis : hypotheses)
+    list.push_back(
+        json::object{{"score", hypothesis.score}, {"T_base_sensor", matrix_json(hypothesis.T_base_sensor)}});
+  return list;
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -186,6 +194,7 @@ json::object calibration_result_object(const CalibrationResult& result) {
   object["links"] = links_json(result.links);
   if (result.held_out_residual_m) object["held_out_residual_m"] = *result.held_out_residual_m;
   if (result.runner_up_margin) object["runner_up_margin"] = *result.runner_up_margin;
+  if (!result.hypotheses.empty()) object["hypotheses"] = hypotheses_json(result.hypotheses);
   object["weak_directions"] = weak_directions_json(result.weak_directions);
   object["workspace"] = workspace_json(result.workspace);
   object["views"] = result.views;

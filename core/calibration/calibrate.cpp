@@ -101,59 +101,120 @@ void explain(std::vector<RegistrationView>& views, const CameraModel& camera, co
   if (auto reason = diagnose(views, camera, tried, {})) result.reasons.push_back(*std::move(reason));
 }
 
-/// The verdict with everything that speaks for and against it.
-CalibrationResult judged(std::vector<RegistrationView>& views, const CameraModel& camera,
-                         const Refinement& refined, const std::optional<ChosenStart>& chosen,
-                         const CalibrationSettings& settings) {
-  const RobotModel& robot = views.front().cell.robot();
-  CalibrationResult result;
-  const Evidence evidence = gather_evidence(views, camera, refined);
-  describe_evidence(robot, evidence, result);
-  judge(refined, evidence, {}, result);
-  judge_margin(chosen, {}, result);
-  if (result.verdict == Verdict::rejected)
-    explain(
-        views, camera,
-        {{refined.T_base_sensor}, settings.guess_T_base_sensor.has_value(), has(result, "surface_differs")},
-        result);
-  if (result.T_base_sensor) {
-    result.joint_zeros = named_zeros(robot, refined);
-    result.workspace = workspace_errors(result.covariance, *result.T_base_sensor, settings.workspace);
+/// One calibration: views made ready once, and poses tried on them.
+class Calibration {
+ public:
+  Calibration(const VirtualCell& cell, const CameraModel& camera, std::span<const View> views,
+              const CalibrationSettings& settings)
+      : camera_(camera), settings_(settings), begin_(std::chrono::steady_clock::now()) {
+    PrepareSettings prepare;
+    prepare.use_images = !settings.depth_only;
+    views_ = prepare_views(cell, camera, views, prepare);
   }
-  return result;
-}
 
-CalibrationResult calibrate_in_full(const VirtualCell& cell, const CameraModel& camera,
-                                    std::span<const View> views, const CalibrationSettings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
-  PrepareSettings prepare;
-  prepare.use_images = !settings.depth_only;
-  std::vector<RegistrationView> prepared = prepare_views(cell, camera, views, prepare);
-  std::optional<ChosenStart> chosen;
-  std::optional<Pose> rough = settings.guess_T_base_sensor;
-  if (!rough && (chosen = choose_start(prepared, camera))) rough = chosen->T_base_sensor;
-  if (!rough)
-    return rejected({"nothing_moved",
-                     "without a guess at least two postures are needed between which the robot moves in "
-                     "view; add postures or give a guess"},
-                    views.size());
-  const Pose start = coarse_align(prepared, camera, *rough, {});
+  CalibrationResult run() {
+    CalibrationResult result = settings_.guess_T_base_sensor ? from_guess(*settings_.guess_T_base_sensor)
+                               : views_.size() == 1          ? from_one_view()
+                                                             : from_nothing();
+    if (is_cancelled()) return rejected({"cancelled", "the calibration was cancelled"}, views_.size());
+    result.views = static_cast<int>(views_.size());
+    return result;
+  }
 
-  RefineSettings refinement;
-  refinement.keep_going = [&](double progress) {
-    if (settings.on_progress) settings.on_progress(0.2 + 0.8 * progress);
-    return !is_cancelled();
-  };
-  const Refinement refined = refine(prepared, camera, start, refinement);
-  if (is_cancelled()) return rejected({"cancelled", "the calibration was cancelled"}, views.size());
+ private:
+  CalibrationResult from_guess(const Pose& guess_T_base_sensor) {
+    CalibrationResult result = tried(guess_T_base_sensor, std::nullopt);
+    result.used_guess = true;
+    if (result.verdict != Verdict::rejected || is_cancelled()) return result;
+    const Pose misled = refined_.T_base_sensor;
+    if (views_.size() > 1) {
+      CalibrationResult searched = from_nothing_unexplained();
+      if (searched.verdict != Verdict::rejected) return searched;
+    }
+    explain(views_, camera_, {{misled}, true, has(result, "surface_differs")}, result);
+    return result;
+  }
 
-  const double time_to_pose_ms = ms_since(begin);
-  CalibrationResult result = judged(prepared, camera, refined, chosen, settings);
-  result.time_to_pose_ms = time_to_pose_ms;
-  result.views = static_cast<int>(views.size());
-  return result;
-}
+  CalibrationResult from_nothing() {
+    CalibrationResult result = from_nothing_unexplained();
+    if (result.verdict == Verdict::rejected && !is_cancelled())
+      explain(views_, camera_, {{refined_.T_base_sensor}, false, has(result, "surface_differs")}, result);
+    return result;
+  }
+
+  CalibrationResult from_nothing_unexplained() {
+    const auto chosen = choose_start(views_, camera_);
+    if (!chosen)
+      return rejected({"nothing_moved",
+                       "nothing that could be the robot moves between the postures in view; let the arm "
+                       "move in view, check the joints that come from the controller, or give a guess"},
+                      views_.size());
+    return tried(chosen->T_base_sensor, chosen);
+  }
+
+  /// The robot may be any part of a single view: what is found is never more than uncertain.
+  CalibrationResult from_one_view() {
+    const auto starts = starts_of_one(views_[0], camera_);
+    CalibrationResult best = rejected({"nothing_found", "nothing in the view looks like the robot"}, 1);
+    for (const StartHypothesis& start : starts) {
+      best = tried(start.T_base_sensor, std::nullopt);
+      if (best.verdict != Verdict::rejected || is_cancelled()) break;
+    }
+    if (best.verdict != Verdict::rejected)
+      doubt("one_view",
+            "of one view without a guess anything that looks like the robot may be taken for it; add a "
+            "posture, or give a guess",
+            best);
+    else
+      best.reasons.insert(best.reasons.begin(),
+                          {"one_view",
+                           "one view without a guess is little to search in; add a posture "
+                           "between which the robot moves in view, or give a guess"});
+    for (const StartHypothesis& start : starts)
+      best.hypotheses.push_back({start.T_base_sensor, start.score.value()});
+    return best;
+  }
+
+  /// Refines a rough pose and judges what comes of it.
+  CalibrationResult tried(const Pose& rough_T_base_sensor, const std::optional<ChosenStart>& chosen) {
+    for (RegistrationView& view : views_) view.apply_zeros(JointZeros::Zero());
+    const Pose start = coarse_align(views_, camera_, rough_T_base_sensor, {});
+    RefineSettings refinement;
+    refinement.keep_going = [&](double progress) {
+      if (settings_.on_progress) settings_.on_progress(0.2 + 0.8 * progress);
+      return !is_cancelled();
+    };
+    refined_ = refine(views_, camera_, start, refinement);
+    const double time_to_pose_ms = ms_since(begin_);
+    if (is_cancelled()) return {};
+    CalibrationResult result = judged(chosen);
+    result.time_to_pose_ms = time_to_pose_ms;
+    return result;
+  }
+
+  /// The verdict with everything that speaks for and against it.
+  CalibrationResult judged(const std::optional<ChosenStart>& chosen) const {
+    const RobotModel& robot = views_.front().cell.robot();
+    CalibrationResult result;
+    const Evidence evidence = gather_evidence(views_, camera_, refined_);
+    describe_evidence(robot, evidence, result);
+    judge(refined_, evidence, {}, result);
+    judge_margin(chosen, {}, result);
+    if (result.T_base_sensor) {
+      result.joint_zeros = named_zeros(robot, refined_);
+      result.workspace = workspace_errors(result.covariance, *result.T_base_sensor, settings_.workspace);
+    }
+    return result;
+  }
+
+  bool is_cancelled() const { return settings_.cancelled != nullptr && settings_.cancelled->load(); }
+
+  const CameraModel& camera_;
+  const CalibrationSettings& settings_;
+  std::chrono::steady_clock::time_point begin_;
+  std::vector<RegistrationView> views_;
+  Refinement refined_;  // of the pose tried last
+};
 
 }  // namespace
 
@@ -164,8 +225,7 @@ CalibrationResult calibrate(const VirtualCell& cell, const CameraModel& camera, 
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
   CalibrationResult result = settings.method == Method::paper
                                  ? calibrate_by_paper(robot, camera, views, settings)
-                                 : calibrate_in_full(cell, camera, views, settings);
-  result.used_guess = settings.guess_T_base_sensor.has_value();
+                                 : Calibration(cell, camera, views, settings).run();
   result.time_total_ms = ms_since(begin);
   return result;
 }

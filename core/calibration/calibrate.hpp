@@ -60,6 +60,12 @@ struct WeakDirection {
   double sigma = 0;                                           ///< rad or m
 };
 
+/// A place where the sensor might be.
+struct Hypothesis {
+  Pose T_base_sensor = Pose::Identity();
+  double score = 0;  ///< how well it explains the view, at most 1
+};
+
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
@@ -91,6 +97,7 @@ struct CalibrationResult {
   /// Of the start search without a guess, -1..1: how much better the best hypothesis explains the views than
   /// the next one that differs; nothing with a guess, or when there was only one.
   std::optional<double> runner_up_margin;
+  std::vector<Hypothesis> hypotheses;  ///< of one view without a guess: where the search ended, best first
   std::vector<WeakDirection> weak_directions;  ///< worst first; empty when all are held
   std::vector<WorkspaceError> workspace;       ///< one per point asked for; empty when rejected
   int views = 0;
@@ -100,9 +107,10 @@ struct CalibrationResult {
   double time_to_pose_ms = 0;  ///< of it, until the pose was found; then it was judged
 };
 
-/// Finds T_base_sensor from one or more views. Never throws on bad data: it returns a rejected result with
-/// reasons. Needs: every view of the camera's size, joint_positions_rad of RobotModel::position_count()
-/// values. Thread-safe: `cell` is only copied, and must not be moved meanwhile.
+/// Finds T_base_sensor from one or more views. A guess from which nothing good is found is given up for a
+/// search from nothing, where there are views to search in. Never throws on bad data: it returns a rejected
+/// result with reasons. Needs: every view of the camera's size, joint_positions_rad of
+/// RobotModel::position_count() values. Thread-safe: `cell` is only copied, and must not be moved meanwhile.
 CalibrationResult calibrate(const VirtualCell& cell, const CameraModel& camera, std::span<const View> views,
                             const CalibrationSettings& settings);
 

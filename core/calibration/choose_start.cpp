@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/global/find_start.hpp"
 #include "core/global/moving_points.hpp"
 #include "core/registration/coarse_align.hpp"
 
@@ -45,6 +44,13 @@ ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
 }
 
 }  // namespace
+
+std::vector<StartHypothesis> starts_of_one(const RegistrationView& view, const CameraModel& camera) {
+  constexpr std::size_t kMost = 5;
+  auto starts = find_starts({&view, 1}, camera, {});
+  if (starts.size() > kMost) starts.resize(kMost);
+  return starts;
+}
 
 std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera) {
   const auto starts = find_starts(views, camera, {});

@@ -3,7 +3,9 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "core/global/find_start.hpp"
 #include "core/registration/registration_view.hpp"
 
 namespace calibrd {
@@ -14,6 +16,9 @@ struct ChosenStart {
   std::optional<double> margin;  ///< score over the best hypothesis elsewhere; nothing when there is none
   Pose T_base_runner_up = Pose::Identity();  ///< that one; set with `margin`
 };
+
+/// Where the robot might be in a single view, best first, at most five: nothing moved, so anything may be it.
+std::vector<StartHypothesis> starts_of_one(const RegistrationView& view, const CameraModel& camera);
 
 /// The best of find_starts(). Where the runner-up comes close, both are pulled onto the surface and judged
 /// again, finer: they may turn out to be the same, or change places. Nothing when nothing moved.

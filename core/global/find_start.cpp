@@ -18,12 +18,14 @@
 namespace calibrd {
 namespace {
 
-constexpr std::size_t kMinPoints = 8;  // per view: fewer say nothing of a shape
+constexpr double kFarthestRobot_m = 4;        // in a single view, of which no part is known to have moved
+constexpr std::size_t kMostPlacesOfOne = 10;  // in a single view the robot may be any part of the scene
+constexpr std::size_t kMinPoints = 8;         // per view: fewer say nothing of a shape
 
 /// What the views that show enough motion say, ready for fitting.
 struct Evidence {
   std::vector<MovingPoints> moving;
-  std::vector<PixelMask> masks;  // of `moving`
+  std::vector<PixelMask> masks;  // of `moving`; empty when nothing can have moved
   std::vector<PosedSurface> surfaces;
   std::vector<std::optional<DistanceField>> fields;
   std::vector<PostureEvidence> postures;
@@ -33,8 +35,12 @@ struct Evidence {
 Evidence gather(std::span<const RegistrationView> views, const CameraModel& camera,
                 const StartSettings& settings) {
   Evidence evidence;
-  evidence.moving = find_moving_points(views, camera, {});
-  for (MovingPoints& moving : evidence.moving) evidence.masks.push_back(std::move(moving.mask));
+  if (views.size() == 1) {
+    evidence.moving.push_back(all_points(views[0], camera, kFarthestRobot_m, {}));
+  } else {
+    evidence.moving = find_moving_points(views, camera, {});
+    for (MovingPoints& moving : evidence.moving) evidence.masks.push_back(std::move(moving.mask));
+  }
   evidence.surfaces = sample_moving_surface(views, settings.surface_points);
   evidence.fields.resize(views.size());
   const auto is_usable = [&](std::size_t v) {
@@ -69,12 +75,13 @@ Eigen::Vector3f visible_middle(const PosedSurface& surface, const Eigen::Vector3
 using Groups = std::vector<std::vector<PointGroup>>;  // per posture
 
 Groups groups_of(std::span<const PostureEvidence> postures) {
-  constexpr float kReach_m = 0.12F;
-  constexpr std::size_t kMostGroups = 6;
+  constexpr float kReach_m = 0.12F, kCube_m = 0.4F;
+  const std::size_t most = postures.size() == 1 ? kMostPlacesOfOne : 6;
   Groups all;
   for (const PostureEvidence& posture : postures) {
-    all.push_back(group_points(posture.points_sensor, kReach_m, kMinPoints));
-    if (all.back().size() > kMostGroups) all.back().resize(kMostGroups);
+    all.push_back(postures.size() == 1 ? group_by_cubes(posture.points_sensor, kCube_m, kMinPoints)
+                                       : group_points(posture.points_sensor, kReach_m, kMinPoints));
+    if (all.back().size() > most) all.back().resize(most);
   }
   return all;
 }
@@ -105,7 +112,7 @@ Place agreed_place(const std::vector<std::vector<Eigen::Vector3f>>& places, cons
 /// the robot is. What else moves (people) agrees on no place.
 std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& evidence,
                          const Groups& groups) {
-  constexpr std::size_t kMostPlaces = 2;
+  const std::size_t most_places = groups.size() == 1 ? kMostPlacesOfOne : 2;
   constexpr float kSame_m = 0.3F;
   const Eigen::Matrix3f R = R_base_sensor.cast<float>();
   std::vector<std::vector<Eigen::Vector3f>> places(groups.size());
@@ -120,7 +127,7 @@ std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& e
   std::vector<Pose> poses;
   for (const Place& place : candidates) {
     const Eigen::Vector3d position = place.position_base.cast<double>();
-    if (poses.size() == kMostPlaces) break;
+    if (poses.size() == most_places) break;
     if (std::ranges::any_of(
             poses, [&](const Pose& other) { return (other.translation() - position).norm() < kSame_m; }))
       continue;

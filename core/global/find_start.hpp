@@ -26,7 +26,8 @@ struct StartHypothesis {
 
 /// Finds the sensor with no idea where it is, from what moved between two views or more: whatever the moving
 /// points' shape fits, all orientations tried, judged by rendering (depth agreement minus free-space
-/// violation). Hypotheses that differ, best first; empty when nothing moved.
+/// violation). Of one view anything may be the robot: what is found then is no more than what it might be.
+/// Hypotheses that differ, best first; empty when nothing moved.
 std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views, const CameraModel& camera,
                                          const StartSettings& settings);
 

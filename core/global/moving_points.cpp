@@ -148,6 +148,15 @@ std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> v
   return moving;
 }
 
+MovingPoints all_points(const RegistrationView& view, const CameraModel& camera, double max_depth_m,
+                        const MovingSettings& settings) {
+  PixelMask near(view.depth_m.size());
+  std::ranges::transform(view.depth_m, near.begin(), [max_depth_m](float z) {
+    return static_cast<std::uint8_t>(z > 0 && z < max_depth_m);
+  });
+  return {thinned(near, view, camera, settings.voxel_m), {}};
+}
+
 std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera) {
   std::vector<PixelMask> masks;
   for (MovingPoints& moving : find_moving_points(views, camera, {})) masks.push_back(std::move(moving.mask));

@@ -31,6 +31,11 @@ struct MovingPoints {
 std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
                                              const CameraModel& camera, const MovingSettings& settings);
 
+/// All that one view shows within `max_depth_m`, thinned evenly: where nothing is known to have moved,
+/// anything may be the robot. Its mask is empty.
+MovingPoints all_points(const RegistrationView& view, const CameraModel& camera, double max_depth_m,
+                        const MovingSettings& settings);
+
 /// The masks of find_moving_points() alone, one per view.
 std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera);
 

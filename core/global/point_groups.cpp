@@ -3,10 +3,32 @@
 #include "core/global/point_groups.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <map>
 #include <numeric>
 
 namespace calibrd {
+namespace {
+
+/// From sums of points to their means, the largest first.
+std::vector<PointGroup> large_ones(std::vector<PointGroup> sums, std::size_t min_size) {
+  std::vector<PointGroup> groups;
+  for (PointGroup& group : sums) {
+    if (group.size == 0 || group.size < min_size) continue;
+    group.middle /= static_cast<float>(group.size);
+    groups.push_back(group);
+  }
+  std::ranges::stable_sort(groups, std::greater<>{}, &PointGroup::size);
+  return groups;
+}
+
+}  // namespace
+
+void PointGroup::add(const Eigen::Vector3f& point) {
+  middle += point;
+  ++size;
+}
 
 std::vector<PointGroup> group_points(std::span<const Eigen::Vector3f> points, float reach_m,
                                      std::size_t min_size) {
@@ -22,19 +44,20 @@ std::vector<PointGroup> group_points(std::span<const Eigen::Vector3f> points, fl
       if ((points[i] - points[j]).squaredNorm() < squared_reach) leader[find(i)] = find(j);
 
   std::vector<PointGroup> by_leader(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    PointGroup& group = by_leader[find(i)];
-    group.middle += points[i];
-    ++group.size;
+  for (std::size_t i = 0; i < points.size(); ++i) by_leader[find(i)].add(points[i]);
+  return large_ones(std::move(by_leader), min_size);
+}
+
+std::vector<PointGroup> group_by_cubes(std::span<const Eigen::Vector3f> points, float side_m,
+                                       std::size_t min_size) {
+  std::map<std::array<int, 3>, PointGroup> cubes;
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Array3i cube = (p / side_m).array().floor().cast<int>();
+    cubes[{cube.x(), cube.y(), cube.z()}].add(p);
   }
   std::vector<PointGroup> groups;
-  for (PointGroup& group : by_leader) {
-    if (group.size == 0 || group.size < min_size) continue;
-    group.middle /= static_cast<float>(group.size);
-    groups.push_back(group);
-  }
-  std::ranges::stable_sort(groups, std::greater<>{}, &PointGroup::size);
-  return groups;
+  for (const auto& [cube, group] : cubes) groups.push_back(group);
+  return large_ones(std::move(groups), min_size);
 }
 
 }  // namespace calibrd

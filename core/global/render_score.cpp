@@ -14,21 +14,10 @@ double share(std::size_t part, std::size_t whole) {
 }
 
 /// The camera of every `reduction`-th pixel: pixel (x, y) of it sees along pixel (x, y) * reduction.
-CameraModel every_nth(const CameraModel& camera, int reduction) {
-  CameraModel sparse = camera;
-  sparse.width = (camera.width + reduction - 1) / reduction;
-  sparse.height = (camera.height + reduction - 1) / reduction;
-  sparse.fx /= reduction;
-  sparse.fy /= reduction;
-  sparse.cx /= reduction;
-  sparse.cy /= reduction;
-  return sparse;
-}
-
 RenderScore score_of(const RegistrationView& view, const std::vector<std::uint8_t>* moving,
                      const CameraModel& camera, const Pose& T_base_sensor,
                      const RenderScoreSettings& settings) {
-  const CameraModel sparse = every_nth(camera, settings.reduction);
+  const CameraModel sparse = camera.subsampled(settings.reduction);
   const auto tolerance = static_cast<float>(settings.tolerance_m);
   VirtualMeasurement prediction;
   view.cell.measure(sparse, T_base_sensor, prediction);

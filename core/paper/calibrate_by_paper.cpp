@@ -10,6 +10,7 @@ namespace calibrd {
 CalibrationResult calibrate_by_paper(const RobotModel& robot, const CameraModel& camera,
                                      std::span<const View> views, const CalibrationSettings& settings) {
   CalibrationResult result;
+  result.used_guess = settings.guess_T_base_sensor.has_value();
   result.views = 1;
   if (!settings.guess_T_base_sensor) {
     result.reasons.push_back({"guess_needed", "the paper's method needs a rough pose to start from"});

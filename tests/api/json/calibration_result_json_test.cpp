@@ -54,6 +54,16 @@ TEST(CalibrationResultJson, HoldsEveryKeyOfTheContract) {
   EXPECT_DOUBLE_EQ(object.at("time_ms").at("load").to_number<double>(), 12.0);
 }
 
+TEST(CalibrationResultJson, ListsHypothesesWhereThereAreAny) {
+  auto result = accepted_result();
+  EXPECT_FALSE(calibration_result_object(result).contains("hypotheses"));
+  result.hypotheses = {{Pose(Eigen::Translation3d(1, 2, 3)), 0.8}};
+  const auto object = json::parse(calibration_result_json(result)).as_object();
+  ASSERT_EQ(object.at("hypotheses").as_array().size(), 1U);
+  EXPECT_DOUBLE_EQ(object.at("hypotheses").at(0).at("score").to_number<double>(), 0.8);
+  EXPECT_DOUBLE_EQ(object.at("hypotheses").at(0).at("T_base_sensor").at(1).at(3).to_number<double>(), 2);
+}
+
 TEST(CalibrationResultJson, RejectedCarriesNoPose) {
   auto result = accepted_result();
   result.verdict = Verdict::rejected;
