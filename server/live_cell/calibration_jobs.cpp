@@ -21,6 +21,12 @@ namespace {
 /// Without a guess the sensor is found from what moves between two postures.
 constexpr int kPosturesFromNothing = 2;
 
+/// `guess`: what the cell would start from.
+std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::optional<Pose>& guess) {
+  if (request.guess_T_base_sensor || request.from_nothing) return request.guess_T_base_sensor;
+  return guess;
+}
+
 }  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
@@ -55,7 +61,7 @@ Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& 
   if (*before) return **before;
   if (const auto busy = active(sensor.id()); !busy.empty())
     return fail(ApiError::calibration_in_progress, busy);
-  const auto start_pose = request.guess_T_base_sensor ? request.guess_T_base_sensor : guess;
+  const auto start_pose = start_of(request, guess);
   if (!start_pose && request.postures && *request.postures < kPosturesFromNothing)
     return fail(ApiError::guess_needed, sensor.id());
   const auto job = make_job(request, sensor, start_pose);

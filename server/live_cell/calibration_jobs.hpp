@@ -42,8 +42,8 @@ class CalibrationJobs {
                   JobSettings settings);
   ~CalibrationJobs();
 
-  /// `sensor` must outlive the jobs. `guess`: where the request holds none; without either, at least two
-  /// postures are collected, and a request for one is refused.
+  /// `sensor` must outlive the jobs. `guess`: where the request leaves the start to the cell. Without any, at
+  /// least two postures are collected, and a request for one is refused.
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request, LiveSensor& sensor,
                                        const std::optional<Pose>& guess);
   Result<api::CalibrationReport> find(const std::string& id) const;

@@ -95,10 +95,10 @@ Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
 }
 
 /// The last pose is a better start than the configured guess: sensors are knocked by less than guesses are
-/// wrong. Nothing: the calibration finds the start itself.
+/// wrong. One that is known to be wrong is none. Nothing: the calibration finds the start itself.
 std::optional<Pose> LiveCell::guess_for(const Entry& entry) const {
-  const auto pose = entry.sensor->pose();
-  return pose.known ? pose.known->result.T_base_sensor : entry.setup.guess_T_base_sensor;
+  const auto pose = entry.sensor->plausible_pose();
+  return pose ? pose : entry.setup.guess_T_base_sensor;
 }
 
 api::SensorReport LiveCell::report_of(const Entry& entry) const {

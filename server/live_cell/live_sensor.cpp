@@ -181,6 +181,11 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
 }
 
+std::optional<Pose> LiveSensor::plausible_pose() const {
+  const std::lock_guard lock(mutex_);
+  return known_ && watch_.is_plausible() ? known_->result.T_base_sensor : std::nullopt;
+}
+
 void LiveSensor::set_evidence(PoseEvidence evidence) {
   const std::lock_guard lock(mutex_);
   evidence_ = std::move(evidence);

@@ -78,6 +78,9 @@ class LiveSensor {
   /// The pose being served. A stored one is unverified until a check agrees.
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
 
+  /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
+  std::optional<Pose> plausible_pose() const;
+
   /// What the newest calibration has found; counts until another pose takes over.
   void set_evidence(PoseEvidence evidence);
   /// Without a calibration since the start: of the pose being served. Nothing: there is no pose.
