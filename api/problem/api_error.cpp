@@ -39,6 +39,7 @@ constexpr std::array kTable{
     Row{ApiError::calibration_not_finished, {409, "calibration_not_finished", "This calibration has not ended yet.", "Wait until its status is succeeded."}},
     Row{ApiError::not_activatable, {409, "not_activatable", "Only an accepted calibration can become the current pose.", "Choose one with verdict accepted."}},
     Row{ApiError::guess_needed, {409, "guess_needed", "One posture is not enough to find the sensor from nothing.", "Ask for at least two postures, or give a guess."}},
+    Row{ApiError::paper_needs_guess, {409, "paper_needs_guess", "The method \"paper\" cannot start from nothing.", "Give a guess (more postures do not help), configure one for the sensor, or use the method \"full\"."}},
     Row{ApiError::capture_in_progress, {409, "capture_in_progress", "A capture of this sensor is under way.", "Wait for it to end."}},
     Row{ApiError::postures_not_seen, {409, "postures_not_seen", "The robot did not hold still in enough different postures.", "Move the robot, ask for fewer postures or a longer timeout_s; views of the sensor says why frames are not used."}},
     Row{ApiError::storage_failed, {500, "storage_failed", "The calibration store failed.", "Check disk space and permissions of storage.path; the log names the fault."}},

@@ -35,6 +35,7 @@ enum class ApiError {
   calibration_not_finished,
   not_activatable,
   guess_needed,
+  paper_needs_guess,
   capture_in_progress,
   postures_not_seen,
   storage_failed,

@@ -62,6 +62,7 @@ Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& 
   if (const auto busy = active(sensor.id()); !busy.empty())
     return fail(ApiError::calibration_in_progress, busy);
   const auto start_pose = start_of(request, guess);
+  if (!start_pose && request.method == Method::paper) return fail(ApiError::paper_needs_guess, sensor.id());
   if (!start_pose && request.postures && *request.postures < kPosturesFromNothing)
     return fail(ApiError::guess_needed, sensor.id());
   const auto job = make_job(request, sensor, start_pose);

@@ -43,7 +43,7 @@ class CalibrationJobs {
   ~CalibrationJobs();
 
   /// `sensor` must outlive the jobs. `guess`: where the request leaves the start to the cell. Without any, at
-  /// least two postures are collected, and a request for one is refused.
+  /// least two postures are collected, and a request for one, or for the paper's method, is refused.
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request, LiveSensor& sensor,
                                        const std::optional<Pose>& guess);
   Result<api::CalibrationReport> find(const std::string& id) const;

@@ -96,5 +96,21 @@ TEST_F(StartPose, IsNothingWhereTheRequestSaysSo) {
   EXPECT_EQ(start_x(from_nothing), std::nullopt);
 }
 
+TEST_F(StartPose, IsNeededByThePapersMethodHoweverManyPostures) {
+  guess_.reset();
+  start();
+  for (const int postures : {1, 2, 5}) {
+    auto by_paper = request(postures);
+    by_paper.method = Method::paper;
+    const auto refused = cell_->start_calibration(by_paper);
+    ASSERT_FALSE(refused) << postures;
+    EXPECT_EQ(refused.error().code, ApiError::paper_needs_guess);
+    by_paper.guess_T_base_sensor = Pose::Identity();
+    const auto started = cell_->start_calibration(by_paper);
+    ASSERT_TRUE(started) << started.error().message();
+    ASSERT_TRUE(cell_->cancel_calibration(started->id));
+  }
+}
+
 }  // namespace
 }  // namespace calibrd
