@@ -31,6 +31,7 @@ constexpr std::array kTable{
     Row{ApiError::pose_not_valid, {409, "pose_not_valid", "There is no pose that may be used now.", "Look at state and last_known of the pose without ?format=; calibrate when it is uncalibrated or drifted."}},
     Row{ApiError::no_pose, {409, "no_pose", "The pose of this sensor is not known at all.", "Calibrate the sensor, or configure a guess for it."}},
     Row{ApiError::no_posture, {409, "no_posture", "No posture was found that the robot may take in the sensor's view.", "Lower table_height_m, or move the sensor so that it sees more of the robot's reach."}},
+    Row{ApiError::calibrate_first, {409, "calibrate_first", "The last pose of this sensor is drifted or withheld: a posture chosen from it could help nothing.", "Calibrate the sensor, then ask again; an uncertain result is enough."}},
     Row{ApiError::no_frame, {503, "no_frame", "The sensor has no current frame.", "Look at health of the sensor; its reason says what to do."}},
     Row{ApiError::no_joints, {503, "no_joints", "The robot controller has sent no joint positions.", "Look at link of GET /api/v1/robot; its reason says what to do."}},
     Row{ApiError::joints_stale, {503, "joints_stale", "The joint positions are stale.", "Look at link of GET /api/v1/robot; its reason says what to do."}},

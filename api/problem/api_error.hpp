@@ -27,6 +27,7 @@ enum class ApiError {
   pose_not_valid,
   no_pose,
   no_posture,
+  calibrate_first,
   no_frame,
   no_joints,
   joints_stale,

@@ -179,7 +179,11 @@ Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& 
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
   const auto evidence = (*entry)->sensor->evidence();
-  if (!evidence) return fail(ApiError::no_pose, request.sensor_id);
+  if (!evidence) {
+    const auto pose = (*entry)->sensor->pose();
+    return pose.known ? fail(ApiError::calibrate_first, request.sensor_id + ": " + pose.reason)
+                      : fail(ApiError::no_pose, request.sensor_id);
+  }
   PlanningSettings planning;
   planning.min_height_m = request.table_height_m;
   planning.min_change_rad = settings_.jobs.collector.min_distance_rad;

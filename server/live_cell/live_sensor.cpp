@@ -146,7 +146,11 @@ void LiveSensor::check(const Sighting& sighting) {
   lock.unlock();
   const auto checked = check_(sighting.view, pose, correction);
   lock.lock();
-  if (number == pose_number_) watch_.on_check(checked, Clock::now());
+  if (number != pose_number_) return;
+  const bool was_plausible = watch_.is_plausible();
+  watch_.on_check(checked, Clock::now());
+  if (was_plausible && !watch_.is_plausible())
+    evidence_.reset();  // it was found where the sensor stood before
 }
 
 void LiveSensor::note(FrameVerdict verdict) {
@@ -193,7 +197,7 @@ void LiveSensor::set_evidence(PoseEvidence evidence) {
 
 std::optional<PoseEvidence> LiveSensor::evidence() const {
   const std::lock_guard lock(mutex_);
-  if (evidence_ || !known_) return evidence_;
+  if (evidence_ || !known_ || !watch_.is_plausible()) return evidence_;
   return PoseEvidence{*known_->result.T_base_sensor, known_->result.covariance, {}};
 }
 

@@ -81,9 +81,9 @@ class LiveSensor {
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
 
-  /// What the newest calibration has found; counts until another pose takes over.
+  /// What the newest calibration has found; counts until another pose takes over, or the sensor has drifted.
   void set_evidence(PoseEvidence evidence);
-  /// Without a calibration since the start: of the pose being served. Nothing: there is no pose.
+  /// Without a calibration since the start: of the pose being served, unless it is known to be wrong.
   std::optional<PoseEvidence> evidence() const;
 
   /// Feeds the task with views until it is complete or cancelled.
