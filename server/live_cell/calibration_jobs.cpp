@@ -107,10 +107,13 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
-  job->task = std::make_shared<CollectTask>(collector, [this] {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  });
+  job->task = std::make_shared<CollectTask>(
+      collector,
+      [this] {
+        const std::lock_guard lock(mutex_);
+        changed_.notify_all();
+      },
+      [this, id = job->report.id] { tell_of_drop(id); });
   return job;
 }
 
@@ -163,6 +166,15 @@ std::string CalibrationJobs::active(const std::string& sensor_id) const {
   return {};
 }
 
+void CalibrationJobs::tell_of_drop(const std::string& id) const {
+  std::optional<CalibrationReport> report;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto job = jobs_.find(id); job != jobs_.end()) report = report_of(*job->second);
+  }
+  if (report) log_(*report);
+}
+
 /// What the job is doing; the caller holds mutex_.
 CalibrationReport CalibrationJobs::report_of(const Job& job) const {
   auto report = job.report;
@@ -172,6 +184,7 @@ CalibrationReport CalibrationJobs::report_of(const Job& job) const {
   report.progress = 0.5 * share;
   report.message =
       std::to_string(report.postures_seen) + " of " + std::to_string(report.postures_wanted) + " postures";
+  report.message += dropped_postures(*job.task);
   const auto views = job.sensor->report().views;
   if (job.task->is_complete())
     report.message += "; waiting for another calibration to be computed";

@@ -37,7 +37,8 @@ class CalibrationJobs {
       std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at)>;
   using Log = std::function<void(const api::CalibrationReport&)>;
 
-  /// `store` must outlive it. `log` hears of every calibration that has ended.
+  /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
+  /// collecting when it has lost postures.
   CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish, Log log,
                   JobSettings settings);
   ~CalibrationJobs();
@@ -74,6 +75,7 @@ class CalibrationJobs {
   void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
   bool store_end(api::CalibrationReport& report, const std::string& basis);
   api::CalibrationReport report_of(const Job& job) const;
+  void tell_of_drop(const std::string& id) const;
 
   CalibrationStore& store_;
   const CalibrateFunction calibrate_;

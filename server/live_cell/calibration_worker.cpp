@@ -83,8 +83,8 @@ std::vector<CalibrationJobs::JobPointer> CalibrationJobs::take_overdue(Clock::ti
 void CalibrationJobs::end_overdue(const JobPointer& job) {
   job->task->cancel();
   const auto seen = std::to_string(job->task->seen()), wanted = std::to_string(job->report.postures_wanted);
-  auto message = "Only " + seen + " of " + wanted +
-                 " postures within calibration.collect_timeout. Move the robot, or ask for fewer postures.";
+  auto message = "Only " + seen + " of " + wanted + " postures within calibration.collect_timeout" +
+                 dropped_postures(*job->task) + ". Move the robot, or ask for fewer postures.";
   if (const auto views = job->sensor->report().views; !views.usable)
     message += " Last: " + views.reason + ".";
   end(job, JobStatus::failed, std::move(message), std::nullopt, std::nullopt);

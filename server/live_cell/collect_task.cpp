@@ -22,6 +22,18 @@ void CollectTask::interrupt() {
   collector_.interrupt();
 }
 
+void CollectTask::start_over() {
+  int dropped = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_cancelled_ || collector_.is_complete()) return;
+    dropped = collector_.seen();
+    dropped_ += dropped;
+    collector_.start_over();
+  }
+  if (dropped > 0 && on_dropped_) on_dropped_();
+}
+
 void CollectTask::cancel() {
   const std::lock_guard lock(mutex_);
   is_cancelled_ = true;
@@ -48,6 +60,11 @@ int CollectTask::seen() const {
   return collector_.seen();
 }
 
+int CollectTask::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
 bool CollectTask::wait_until(Clock::time_point deadline) {
   std::unique_lock lock(mutex_);
   ended_.wait_until(lock, deadline, [this] { return is_cancelled_ || collector_.is_complete(); });
@@ -57,6 +74,13 @@ bool CollectTask::wait_until(Clock::time_point deadline) {
 std::vector<View> CollectTask::take_views() {
   const std::lock_guard lock(mutex_);
   return collector_.take_views();
+}
+
+std::string dropped_postures(const CollectTask& task) {
+  const int dropped = task.dropped();
+  if (dropped == 0) return {};
+  return "; " + std::to_string(dropped) +
+         " more were dropped when the sensor was lost, because it may have been moved";
 }
 
 }  // namespace calibrd

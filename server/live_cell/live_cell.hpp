@@ -37,7 +37,7 @@ struct LiveCellSettings {
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
 struct CellLog {
-  CalibrationJobs::Log on_calibration;                  ///< every one that has ended
+  CalibrationJobs::Log on_calibration;                  ///< see CalibrationJobs
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
 };
 

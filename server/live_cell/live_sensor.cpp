@@ -113,18 +113,20 @@ void LiveSensor::finish(FrameDecision decision) {
     newest_ = sighting;
   }
   const bool usable = decision.verdict == FrameVerdict::usable;
-  serve_tasks(sighting->view, usable);
+  serve_tasks(*sighting, usable);
   if (usable) check(*sighting);
 }
 
-void LiveSensor::serve_tasks(const View& view, bool usable) {
-  std::vector<std::shared_ptr<CollectTask>> tasks;
-  {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(tasks_, [](const auto& task) { return !task->is_open(); });
-    tasks = tasks_;
-  }
-  for (const auto& task : tasks) usable ? task->offer(view) : task->interrupt();
+std::vector<std::shared_ptr<CollectTask>> LiveSensor::open_tasks() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(tasks_, [](const auto& task) { return !task->is_open(); });
+  return tasks_;
+}
+
+void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
+  const auto tasks = open_tasks();
+  const bool is_of_use = usable && sighting.stamp > lost_at_;  // which only this thread writes
+  for (const auto& task : tasks) is_of_use ? task->offer(sighting.view) : task->interrupt();
 }
 
 /// A sensor that was away, if only for a restart of its process, may have been moved.
@@ -132,9 +134,12 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
   const bool away = health.state != SensorHealth::State::streaming;
   if (!away && health.restarts == restarts_) return;
   restarts_ = health.restarts;
-  const std::lock_guard lock(mutex_);
-  lost_at_ = Clock::now();
-  watch_.on_sensor_lost();
+  {
+    const std::lock_guard lock(mutex_);
+    lost_at_ = Clock::now();
+    watch_.on_sensor_lost();
+  }
+  for (const auto& task : open_tasks()) task->start_over();
 }
 
 void LiveSensor::check(const Sighting& sighting) {

@@ -101,7 +101,8 @@ class LiveSensor {
   bool has_size_of_camera(const DepthFrame& frame) const;
   void settle();
   void finish(FrameDecision decision);
-  void serve_tasks(const View& view, bool usable);
+  void serve_tasks(const Sighting& sighting, bool usable);
+  std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);

@@ -88,8 +88,9 @@ class CellFixture : public ::testing::Test {
     auto mapping =
         JointMapping::make(joints_in_wire_order(model_->position_names()), model_->position_names());
     ASSERT_TRUE(mapping) << mapping.error().message();
-    cell_ = std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
-                                       estimator(), CellLog{[](const auto&) {}, {}});
+    cell_ =
+        std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
+                                   estimator(), CellLog{[this](const auto& report) { on_log_(report); }, {}});
     ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_}));
     feed_ = std::make_shared<FedSource::Feed>();
     cell_->start("eye", std::make_unique<FedSource>(feed_));
@@ -226,6 +227,7 @@ class CellFixture : public ::testing::Test {
   std::uint64_t joints_sent_ = 0, frames_sent_ = 0;
   std::atomic<int> checks_{0};
   std::atomic<bool> agrees_{true};
+  std::function<void(const api::CalibrationReport&)> on_log_ = [](const auto&) {};
   std::function<CalibrationResult(std::span<const View>, const CalibrationSettings&)> on_calibrate_ =
       [](std::span<const View> views, const CalibrationSettings&) { return accepted(views); };
 };
