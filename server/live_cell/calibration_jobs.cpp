@@ -180,8 +180,7 @@ CalibrationReport CalibrationJobs::report_of(const Job& job) const {
   auto report = job.report;
   report.postures_seen = job.task->seen();
   if (report.status != JobStatus::collecting) return report;
-  const double share = static_cast<double>(report.postures_seen) / report.postures_wanted;
-  report.progress = 0.5 * share;
+  report.progress = kCollectingShare * job.task->most_seen() / report.postures_wanted;
   report.message =
       std::to_string(report.postures_seen) + " of " + std::to_string(report.postures_wanted) + " postures";
   report.message += dropped_postures(*job.task);

@@ -67,6 +67,7 @@ class CalibrationJobs {
   void run();
   JobPointer next_ready();
   std::vector<JobPointer> take_overdue(Clock::time_point now);
+  static void begin_computing(Job& job);
   void compute(const JobPointer& job);
   CalibrationResult calibrate(const JobPointer& job, std::span<const View> views);
   void end(const JobPointer& job, api::JobStatus status, std::string message,

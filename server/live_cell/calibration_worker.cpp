@@ -45,7 +45,7 @@ void CalibrationJobs::run() {
   while (!is_stopping_) {
     const auto overdue = take_overdue(Clock::now());
     const auto ready = next_ready();
-    if (ready) ready->report.status = JobStatus::running;
+    if (ready) begin_computing(*ready);
     if (overdue.empty() && !ready) {
       auto wake = Clock::now() + kLongWait;
       for (const auto& [id, job] : jobs_)
@@ -58,6 +58,12 @@ void CalibrationJobs::run() {
     if (ready) compute(ready);
     lock.lock();
   }
+}
+
+/// The caller holds mutex_.
+void CalibrationJobs::begin_computing(Job& job) {
+  job.report.status = JobStatus::running;
+  job.report.progress = kCollectingShare;
 }
 
 /// The oldest job that has its postures; the caller holds mutex_.
@@ -115,7 +121,8 @@ CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<co
   settings.cancelled = &job->cancelled;
   settings.on_progress = [&](double share) {
     const std::lock_guard lock(mutex_);
-    job->report.progress = 0.5 + 0.5 * std::clamp(share, 0.0, 1.0);
+    const double progress = kCollectingShare + (1 - kCollectingShare) * std::clamp(share, 0.0, 1.0);
+    job->report.progress = std::max(job->report.progress, progress);  // a computation may begin once more
   };
   try {
     return calibrate_(job->sensor->camera(), views, settings);

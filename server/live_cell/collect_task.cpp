@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/live_cell/collect_task.hpp"
 
+#include <algorithm>
+
 namespace calibrd {
 
 void CollectTask::offer(const View& view) {
@@ -10,6 +12,7 @@ void CollectTask::offer(const View& view) {
     const std::lock_guard lock(mutex_);
     if (is_cancelled_ || collector_.is_complete()) return;
     collector_.offer(view);
+    most_seen_ = std::max(most_seen_, collector_.seen());
     if (!collector_.is_complete()) return;
     tell = std::move(on_complete_);
     ended_.notify_all();
@@ -58,6 +61,11 @@ bool CollectTask::is_waiting_for_motion() const {
 int CollectTask::seen() const {
   const std::lock_guard lock(mutex_);
   return collector_.seen();
+}
+
+int CollectTask::most_seen() const {
+  const std::lock_guard lock(mutex_);
+  return most_seen_;
 }
 
 int CollectTask::dropped() const {

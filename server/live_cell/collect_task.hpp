@@ -30,7 +30,8 @@ class CollectTask {
   bool is_complete() const;
   bool is_waiting_for_motion() const;
   int seen() const;
-  int dropped() const;  ///< postures that start_over() has dropped
+  int dropped() const;    ///< postures that start_over() has dropped
+  int most_seen() const;  ///< never fewer than before
 
   /// Waits for the end. True: complete; false: cancelled, or the deadline has come.
   bool wait_until(Clock::time_point deadline);
@@ -43,7 +44,7 @@ class CollectTask {
   PostureCollector collector_;
   std::function<void()> on_complete_;
   const std::function<void()> on_dropped_;
-  int dropped_ = 0;
+  int dropped_ = 0, most_seen_ = 0;
   bool is_cancelled_ = false;
 };
 

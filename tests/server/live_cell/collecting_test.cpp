@@ -44,7 +44,8 @@ class Collecting : public CellFixture {
   }
   static double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
-  std::vector<double> stamps_s_;
+  std::vector<double> stamps_s_, progress_;
+  std::string id_;
 
  private:
   std::mutex log_mutex_;
@@ -90,6 +91,40 @@ TEST_F(Collecting, EndsAtItsTimeLimitAndTellsOfTheLoss) {
   EXPECT_EQ(job(id).status, JobStatus::failed);
   EXPECT_THAT(job(id).message, HasSubstr("Only 0 of 3 postures"));
   EXPECT_THAT(job(id).message, HasSubstr("1 more were dropped"));
+}
+
+TEST_F(Collecting, ProgressNeverFalls) {
+  on_calibrate_ = [this](auto views, const CalibrationSettings& settings) {
+    for (const double share : {0.0, 0.4, 0.2, 1.0}) {
+      settings.on_progress(share);
+      progress_.push_back(job(id_).progress);
+    }
+    return accepted(views);
+  };
+  id_ = start_job(2)->id;
+  EXPECT_EQ(job(id_).progress, 0);
+  see_postures(id_, 1);
+  EXPECT_EQ(job(id_).progress, 0.25);
+  set_health(SensorHealth::State::lost);
+  wait_for_drop(id_);
+  EXPECT_EQ(job(id_).progress, 0.25);
+  set_health(SensorHealth::State::streaming);
+  let_it_end(id_);
+  EXPECT_EQ(progress_, (std::vector<double>{0.5, 0.7, 0.7, 1.0}));
+  EXPECT_EQ(job(id_).progress, 1);
+}
+
+TEST_F(Collecting, BeginsToComputeWithHalfOfTheProgress) {
+  std::atomic<bool> may_end{false};
+  on_calibrate_ = [&](auto views, const auto&) {
+    while (!may_end) std::this_thread::yield();
+    return accepted(views);
+  };
+  const auto id = start_job(1)->id;
+  watch_until([&] { return job(id).status == JobStatus::running; });
+  EXPECT_EQ(job(id).progress, 0.5);
+  may_end = true;
+  wait_for([&] { return job(id).finished.has_value(); });
 }
 
 TEST(CollectTask, KeepsItsViewsOnceItIsComplete) {
