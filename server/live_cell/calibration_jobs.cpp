@@ -184,11 +184,11 @@ CalibrationReport CalibrationJobs::report_of(const Job& job) const {
   report.message =
       std::to_string(report.postures_seen) + " of " + std::to_string(report.postures_wanted) + " postures";
   report.message += dropped_postures(*job.task);
-  const auto views = job.sensor->report().views;
+  const auto hindrance = job.sensor->hindrance();
   if (job.task->is_complete())
     report.message += "; waiting for another calibration to be computed";
-  else if (!views.usable)
-    report.message += "; " + views.reason;
+  else if (!hindrance.empty())
+    report.message += "; " + hindrance;
   else if (job.task->is_waiting_for_motion())
     report.message += "; move the robot to another posture and let it hold still";
   return report;

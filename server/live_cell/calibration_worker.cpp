@@ -91,8 +91,8 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
   const auto seen = std::to_string(job->task->seen()), wanted = std::to_string(job->report.postures_wanted);
   auto message = "Only " + seen + " of " + wanted + " postures within calibration.collect_timeout" +
                  dropped_postures(*job->task) + ". Move the robot, or ask for fewer postures.";
-  if (const auto views = job->sensor->report().views; !views.usable)
-    message += " Last: " + views.reason + ".";
+  if (const auto hindrance = job->sensor->hindrance(); !hindrance.empty())
+    message += " Last: " + hindrance + ".";
   end(job, JobStatus::failed, std::move(message), std::nullopt, std::nullopt);
 }
 

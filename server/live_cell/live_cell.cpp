@@ -214,10 +214,10 @@ Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequ
   }
   if (complete) return task->take_views();
   if (is_stopping_) return fail(ApiError::shutting_down);
-  const auto views = entry.sensor->report().views;
+  const auto hindrance = entry.sensor->hindrance();
   return fail(ApiError::postures_not_seen,
               std::to_string(task->seen()) + " of " + std::to_string(request.postures) + " postures" +
-                  dropped_postures(*task) + (views.usable ? "" : "; last frame: " + views.reason));
+                  dropped_postures(*task) + (hindrance.empty() ? "" : "; " + hindrance));
 }
 
 Result<api::CaptureArchive> LiveCell::record_capture(const api::CaptureRequest& request) {

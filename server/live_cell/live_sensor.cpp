@@ -264,6 +264,13 @@ api::SensorReport LiveSensor::report() const {
   return report;
 }
 
+/// What became of the last frame says nothing of a sensor that sends none.
+std::string LiveSensor::hindrance() const {
+  const auto now = report();
+  if (now.health == name_of(SensorHealth::State::streaming)) return now.views.reason;
+  return "the sensor is " + now.health + (now.reason.empty() ? "" : ": " + now.reason);
+}
+
 double LiveSensor::frame_rate_hz(Clock::time_point now) const {
   const auto first = std::find_if(arrivals_.begin(), arrivals_.end(),
                                   [&](Clock::time_point arrival) { return now - arrival < kRateWindow; });

@@ -94,6 +94,8 @@ class LiveSensor {
 
   api::PoseReport pose() const;
   api::SensorReport report() const;
+  /// Why it gives no views now, and what to do; empty: it does.
+  std::string hindrance() const;
 
  private:
   void run();

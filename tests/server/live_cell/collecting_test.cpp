@@ -93,6 +93,24 @@ TEST_F(Collecting, EndsAtItsTimeLimitAndTellsOfTheLoss) {
   EXPECT_THAT(job(id).message, HasSubstr("1 more were dropped"));
 }
 
+TEST_F(Collecting, SaysThatTheSensorIsLostAndNotWhatItsLastFrameShowed) {
+  settings_.jobs.collect_timeout = std::chrono::seconds(1);
+  start();
+  const auto id = start_job(1)->id;
+  repeat_until([&] { show(); }, [&] { return !cell_->sensor("eye")->views.refused.empty(); });
+  ASSERT_THAT(job(id).message, HasSubstr("joint positions"));
+  {
+    const std::lock_guard lock(feed_->mutex);
+    feed_->health.reason = "unplugged; plug it in";
+  }
+  set_health(SensorHealth::State::lost);
+  EXPECT_THAT(job(id).message, HasSubstr("0 of 1 postures; the sensor is lost: unplugged; plug it in"));
+  EXPECT_THAT(cell_->record_capture({"eye", 1, api::Seconds(0.01), ""}).error().detail,
+              HasSubstr("0 of 1 postures; the sensor is lost: unplugged; plug it in"));
+  wait_for([&] { return job(id).finished.has_value(); });
+  EXPECT_THAT(job(id).message, HasSubstr("Last: the sensor is lost: unplugged; plug it in"));
+}
+
 TEST_F(Collecting, ProgressNeverFalls) {
   on_calibrate_ = [this](auto views, const CalibrationSettings& settings) {
     for (const double share : {0.0, 0.4, 0.2, 1.0}) {
