@@ -73,7 +73,8 @@ Result<Loaded> load(const CalibrateOptions& options) {
   }
   for (const std::string& text : options.workspace)
     if (const auto point = parse_point(text, settings.workspace.size())) settings.workspace.push_back(*point);
-  auto capture = read_capture(options.capture_dir, options.models);
+  const auto images = options.depth_only ? CaptureImages::ignore : CaptureImages::read;
+  auto capture = read_capture(options.capture_dir, options.models, images);
   if (!capture) return capture.error();
   RobotModelOptions model_options{{options.capture_dir}, capture->base_link};
   model_options.search_paths.insert(model_options.search_paths.end(), options.models.begin(),
