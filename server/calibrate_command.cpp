@@ -15,6 +15,7 @@
 #include "core/paper/paper_error.hpp"
 #include "core/paper/region.hpp"
 #include "core/planning/next_posture.hpp"
+#include "core/planning/table_height.hpp"
 
 namespace calibrd {
 namespace {
@@ -57,6 +58,10 @@ std::optional<WorkspacePoint> parse_point(const std::string& text, std::size_t p
 
 std::string check_point(const std::string& text) {
   return parse_point(text, 0) ? "" : "\"" + text + "\" is not x,y,z or NAME=x,y,z (m, base frame)";
+}
+
+std::string check_table_height(const std::string& text) {
+  return parse_table_height(text) ? "" : not_a_table_height(text);
 }
 
 Result<Loaded> load(const CalibrateOptions& options) {
@@ -129,7 +134,8 @@ void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--table-height", options.table_height_m,
                   "What --suggest suggests stays above this height in the base frame, m; default: 0")
-      ->needs(suggest);
+      ->needs(suggest)
+      ->check(check_table_height);
   command.add_flag("--json", options.json, "Print JSON (always the case)");
 }
 

@@ -47,6 +47,18 @@ class BadInput(CellTest):
                                    stderr=subprocess.PIPE, text=True, timeout=20, check=False)
             self.expect_refused(ended, "stdout")
 
+    def test_numbers_of_calibrate_that_are_none(self):
+        options = {"--table-height": ("nan", "inf", "1e400", "10.1", "high", ""), "--workspace": ("nan,0,0", "1e400,0,0"),
+                   "--guess": ("nan,0,0,0,0,0,1", "1e400,0,0,0,0,0,1"), "--roi": ("nan,0,0,1,1,1", "0,0,0,1,1,1e400")}
+        for option, values in options.items():
+            for value in values:
+                method = ("--method", "paper") if option == "--roi" else ()
+                ended = subprocess.run([BIN / "calibrd", "calibrate", self.folder, "--suggest", *method, f"{option}={value}"],
+                                       capture_output=True, text=True, timeout=20, check=False)
+                with self.subTest(option=option, value=value):
+                    self.expect_refused(ended, value)
+                    self.assertNotIn("capture.json", ended.stderr, "the number was taken")
+
     def test_a_mistyped_key_is_named_with_its_line_and_the_nearest_name(self):
         config = self.folder / "typo.toml"
         config.write_text('[robot]\nurdf = "a.urdf"\nhots = "127.0.0.1"\n')
