@@ -38,7 +38,7 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   gate.latency = setup.latency;
   auto entry = std::make_unique<Entry>();
   entry->setup = setup;
-  const auto basis = robot_basis_ + camera_basis(setup.camera);
+  const auto basis = robot_basis_ + camera_basis(setup.camera, setup.mirror);
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
       estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });

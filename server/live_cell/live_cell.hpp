@@ -47,6 +47,7 @@ struct SensorSetup {
   Clock::duration latency{0};
   std::optional<Pose> guess_T_base_sensor;
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
+  bool mirror = false;                         ///< its rows are flipped before anybody sees them
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.

@@ -91,7 +91,7 @@ class CellFixture : public ::testing::Test {
     cell_ =
         std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
                                    estimator(), CellLog{[this](const auto& report) { on_log_(report); }, {}});
-    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_}));
+    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_, {}, mirror_}));
     feed_ = std::make_shared<FedSource::Feed>();
     cell_->start("eye", std::make_unique<FedSource>(feed_));
     events_ = cell_->robot_link().events();
@@ -210,6 +210,7 @@ class CellFixture : public ::testing::Test {
   std::filesystem::path folder_;
   CameraModel camera_{32, 24, 30, 30, 15.5, 11.5, {0, 0, 0, 0, 0}};
   std::optional<Pose> guess_ = Pose::Identity();
+  bool mirror_ = false;
   LiveCellSettings settings_ = [] {
     LiveCellSettings settings;
     settings.watch.check_period = std::chrono::milliseconds(5);

@@ -65,6 +65,17 @@ TEST_F(ServedPose, StoredPoseOfAnotherRobotModelStaysInvalidUntilACalibration) {
   EXPECT_TRUE(pose().valid);
 }
 
+TEST_F(ServedPose, StoredPoseOfUnflippedFramesStaysInvalidForFlippedOnes) {
+  calibrate();
+  mirror_ = true;
+  start();
+  expect_checks_change_nothing();
+  EXPECT_NE(pose().reason.find("mirror (now true, then false)"), std::string::npos) << pose().reason;
+  mirror_ = false;
+  start();
+  watch_until([&] { return pose().valid; });
+}
+
 TEST_F(ServedPose, PoseOfALostSensorIsUnverifiedAtOnceUntilACheckOfALaterFrame) {
   calibrate();
   ASSERT_TRUE(pose().valid);
