@@ -30,6 +30,8 @@ void log_calibration(const api::CalibrationReport& calibration) {
               api::name_of(calibration.status), verdict, message);
 }
 
+void log_error(const std::string& message) { spdlog::error("{}", message); }
+
 void log_pose(const api::PoseReport& pose) {
   if (pose.valid)
     spdlog::info("sensor {}: the pose of calibration {} is valid", pose.sensor_id,

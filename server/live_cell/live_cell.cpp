@@ -61,10 +61,17 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
 }
 
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
-  // Where this cannot be stored, the pose is drifted all the same, until a restart.
-  if (pose.state == api::PoseState::drifted && pose.known)
-    static_cast<void>(store_.add_drift(pose.known->calibration_id));
+  if (pose.state == api::PoseState::drifted && pose.known) store_drift(pose);
   if (log_.on_pose) log_.on_pose(pose);
+}
+
+/// Where this cannot be stored, the pose is drifted all the same, until a restart.
+void LiveCell::store_drift(const api::PoseReport& pose) {
+  const auto stored = store_.add_drift(pose.known->calibration_id);
+  if (stored || !log_.on_error) return;
+  log_.on_error(
+      "sensor " + pose.sensor_id + ": that the pose of calibration " + pose.known->calibration_id +
+      " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
 }
 
 void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {

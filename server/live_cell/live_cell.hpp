@@ -39,6 +39,7 @@ struct LiveCellSettings {
 struct CellLog {
   CalibrationJobs::Log on_calibration;                  ///< see CalibrationJobs
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
+  std::function<void(const std::string&)> on_error;     ///< what went wrong and was asked for by nobody
 };
 
 struct SensorSetup {
@@ -96,6 +97,7 @@ class LiveCell : public api::CellService {
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin);
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
+  void store_drift(const api::PoseReport& pose);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 

@@ -39,5 +39,10 @@ TEST_F(EventLog, CalibrationThatLosesItsPosturesIsAWarning) {
   EXPECT_EQ(lines_.str(), "warning sensor eye: calibration c1 collecting. 0 of 3 postures\n");
 }
 
+TEST_F(EventLog, ErrorsAreLoggedAsSuch) {
+  log_error("the disk is full");
+  EXPECT_EQ(lines_.str(), "error the disk is full\n");
+}
+
 }  // namespace
 }  // namespace calibrd

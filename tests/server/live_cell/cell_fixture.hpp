@@ -88,9 +88,11 @@ class CellFixture : public ::testing::Test {
     auto mapping =
         JointMapping::make(joints_in_wire_order(model_->position_names()), model_->position_names());
     ASSERT_TRUE(mapping) << mapping.error().message();
-    cell_ =
-        std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
-                                   estimator(), CellLog{[this](const auto& report) { on_log_(report); }, {}});
+    cell_ = std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
+                                       estimator(),
+                                       CellLog{[this](const auto& report) { on_log_(report); },
+                                               {},
+                                               [this](const auto& error) { on_error_(error); }});
     ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_, {}, mirror_}));
     feed_ = std::make_shared<FedSource::Feed>();
     cell_->start("eye", std::make_unique<FedSource>(feed_));
@@ -229,6 +231,7 @@ class CellFixture : public ::testing::Test {
   std::atomic<int> checks_{0};
   std::atomic<bool> agrees_{true};
   std::function<void(const api::CalibrationReport&)> on_log_ = [](const auto&) {};
+  std::function<void(const std::string&)> on_error_ = [](const auto&) {};
   std::function<CalibrationResult(std::span<const View>, const CalibrationSettings&)> on_calibrate_ =
       [](std::span<const View> views, const CalibrationSettings&) { return accepted(views); };
 };
