@@ -44,6 +44,10 @@ std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camer
   return std::nullopt;
 }
 
+double ms_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
 CalibrationResult rejected(Reason reason, std::size_t views) {
   CalibrationResult result;
   result.views = static_cast<int>(views);
@@ -119,10 +123,10 @@ CalibrationResult judged(std::vector<RegistrationView>& views, const CameraModel
   return result;
 }
 
-CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& camera,
+CalibrationResult calibrate_in_full(const VirtualCell& cell, const CameraModel& camera,
                                     std::span<const View> views, const CalibrationSettings& settings) {
+  const auto begin = std::chrono::steady_clock::now();
   const auto is_cancelled = [&] { return settings.cancelled != nullptr && settings.cancelled->load(); };
-  const VirtualCell cell(robot);
   PrepareSettings prepare;
   prepare.use_images = !settings.depth_only;
   std::vector<RegistrationView> prepared = prepare_views(cell, camera, views, prepare);
@@ -144,24 +148,31 @@ CalibrationResult calibrate_in_full(const RobotModel& robot, const CameraModel& 
   const Refinement refined = refine(prepared, camera, start, refinement);
   if (is_cancelled()) return rejected({"cancelled", "the calibration was cancelled"}, views.size());
 
+  const double time_to_pose_ms = ms_since(begin);
   CalibrationResult result = judged(prepared, camera, refined, chosen, settings);
+  result.time_to_pose_ms = time_to_pose_ms;
   result.views = static_cast<int>(views.size());
   return result;
 }
 
 }  // namespace
 
-CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
+CalibrationResult calibrate(const VirtualCell& cell, const CameraModel& camera, std::span<const View> views,
                             const CalibrationSettings& settings) {
+  const RobotModel& robot = cell.robot();
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());
   CalibrationResult result = settings.method == Method::paper
                                  ? calibrate_by_paper(robot, camera, views, settings)
-                                 : calibrate_in_full(robot, camera, views, settings);
+                                 : calibrate_in_full(cell, camera, views, settings);
   result.used_guess = settings.guess_T_base_sensor.has_value();
-  result.time_total_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  result.time_total_ms = ms_since(begin);
   return result;
+}
+
+CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
+                            const CalibrationSettings& settings) {
+  return calibrate(VirtualCell(robot), camera, views, settings);
 }
 
 }  // namespace calibrd

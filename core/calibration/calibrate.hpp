@@ -15,6 +15,7 @@
 #include "core/paper/paper_settings.hpp"
 #include "core/robot/robot_model.hpp"
 #include "core/sensing/depth_correction.hpp"
+#include "core/virtual_cell/virtual_cell.hpp"
 
 namespace calibrd {
 
@@ -96,11 +97,16 @@ struct CalibrationResult {
   bool used_guess = false;
   std::vector<Reason> reasons;
   double time_total_ms = 0;
+  double time_to_pose_ms = 0;  ///< of it, until the pose was found; then it was judged
 };
 
 /// Finds T_base_sensor from one or more views. Never throws on bad data: it returns a rejected result with
 /// reasons. Needs: every view of the camera's size, joint_positions_rad of RobotModel::position_count()
-/// values. Thread-safe: concurrent calls share nothing.
+/// values. Thread-safe: `cell` is only copied, and must not be moved meanwhile.
+CalibrationResult calibrate(const VirtualCell& cell, const CameraModel& camera, std::span<const View> views,
+                            const CalibrationSettings& settings);
+
+/// The same with a virtual cell of its own, which costs some milliseconds to build.
 CalibrationResult calibrate(const RobotModel& robot, const CameraModel& camera, std::span<const View> views,
                             const CalibrationSettings& settings);
 

@@ -72,7 +72,7 @@ std::vector<SurfaceTally> tally_links(const RegistrationView& view, const Virtua
 /// What one view alone says of the parameters, sums and samples.
 struct OneViewSums {
   NormalEquations equations;
-  std::vector<RangeSample> samples;
+  std::vector<Sample> samples;
 };
 
 OneViewSums sums_of(const RegistrationView& view, const VirtualMeasurement& prediction,
@@ -83,8 +83,9 @@ OneViewSums sums_of(const RegistrationView& view, const VirtualMeasurement& pred
   settings.stride = 3;
   OneViewSums sums;
   RangeTally tally;
-  add_range_residuals(view, prediction, camera, T_base_sensor, refined.correction, settings, sums.equations,
-                      tally, &sums.samples);
+  observe_range(view, prediction, camera, T_base_sensor, refined.correction, settings, {}, sums.samples,
+                tally);
+  for (const Sample& sample : sums.samples) sums.equations.add(sample.observation, sample.cluster);
   return sums;
 }
 
@@ -104,7 +105,7 @@ double joint_pull_m(const OneViewSums& sums) {
   information.diagonal().array() += 1 / (kPrior_rad * kPrior_rad);
   const Joints zeros = information.ldlt().solve(sums.equations.gradient().tail<kMaxJointZeros>());
   double squares = 0;
-  for (const RangeSample& sample : sums.samples) {
+  for (const Sample& sample : sums.samples) {
     const double moved = sample.observation.jacobian.tail<kMaxJointZeros>().dot(zeros);
     squares += moved * moved;
   }
@@ -142,7 +143,7 @@ double held_out_residual_m(const std::vector<OneViewSums>& views, double correla
     const ParameterVector step = ParameterMatrix(information - own / correlation)
                                      .ldlt()
                                      .solve(gradient - view.equations.gradient() / correlation);
-    for (const RangeSample& sample : view.samples)
+    for (const Sample& sample : view.samples)
       residuals.push_back(
           static_cast<float>(std::abs(sample.observation.residual - sample.observation.jacobian.dot(step))));
   }

@@ -58,4 +58,15 @@ Eigen::Matrix<double, 2, 3> CameraModel::projection_jacobian(const Eigen::Vector
   return Eigen::Vector2d(fx, fy).asDiagonal() * distort_jacobian(distortion, x, y) * normalised;
 }
 
+CameraModel CameraModel::subsampled(int step) const {
+  CameraModel sparse = *this;
+  sparse.width = (width + step - 1) / step;
+  sparse.height = (height + step - 1) / step;
+  sparse.fx /= step;
+  sparse.fy /= step;
+  sparse.cx /= step;
+  sparse.cy /= step;
+  return sparse;
+}
+
 }  // namespace calibrd

@@ -25,6 +25,10 @@ struct CameraModel {
 
   /// Derivative of project() by the point: 2×3, pixels per metre.
   Eigen::Matrix<double, 2, 3> projection_jacobian(const Eigen::Vector3d& point_sensor) const;
+
+  /// The camera that has every `step`-th pixel of this one in both directions: its pixel (x, y) sees what
+  /// pixel (step x, step y) of this one sees.
+  CameraModel subsampled(int step) const;
 };
 
 }  // namespace calibrd

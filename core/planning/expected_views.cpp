@@ -75,7 +75,7 @@ ExpectedViews::ExpectedViews(const VirtualCell& cell, const CameraModel& camera,
       T_base_sensor_(T_base_sensor),
       predictions_(seen_postures.size() + 1),
       information_(prior_information()) {
-  const auto rays = std::make_shared<const PixelRays>(coarse_);
+  const auto rays = cell.pixel_rays(coarse_);
   for (std::size_t i = 0; i <= seen_postures.size(); ++i) views_.push_back(empty_view(cell, rays));
   for (std::size_t i = 0; i < seen_postures.size(); ++i) information_ += see(i, seen_postures[i]).information;
   compare_with_known(covariance);

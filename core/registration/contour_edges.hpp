@@ -40,16 +40,24 @@ struct ContourPoint {
   std::size_t cluster = 0;  ///< errors of one cluster correlate
 };
 
-/// The contour that nothing hides. Contour pixels with (x + y) divisible by `stride` are taken: the choice is
-/// stable between steps. `prediction` must be what `view.cell` shows from `T_base_sensor`.
+struct ContourSearch {
+  int stride =
+      2;  ///< contour pixels with (x + y) divisible by it are taken: the choice is stable between steps
+  int prediction_step = 1;  ///< the prediction is that of camera.subsampled(prediction_step)
+  RowBand rows;             ///< of the prediction; they begin at a multiple of kBandRows of the image
+};
+
+/// The contour that nothing hides. `prediction` must be what `view.cell` shows from `T_base_sensor`.
 std::vector<ContourPoint> find_contour(const RegistrationView& view, const VirtualMeasurement& prediction,
-                                       const CameraModel& camera, const Pose& T_base_sensor, int stride);
+                                       const CameraModel& camera, const Pose& T_base_sensor,
+                                       const ContourSearch& search);
 
 /// Residuals across the line of sight, which range cannot give: the robot's occluding contours are predicted
 /// by the virtual sensor, and edges of the image or the depth are searched along their normals (Drummond &
 /// Cipolla 2002). Needs no mask. Does nothing when the view has no image and edges of one are asked for.
-void add_contour_residuals(const RegistrationView& view, std::span<const ContourPoint> contour,
-                           const CameraModel& camera, const Pose& T_base_sensor,
-                           const ContourSettings& settings, NormalEquations& equations, ContourTally& tally);
+/// Appends to `samples`.
+void observe_contour(const RegistrationView& view, std::span<const ContourPoint> contour,
+                     const CameraModel& camera, const Pose& T_base_sensor, const ContourSettings& settings,
+                     std::vector<Sample>& samples, ContourTally& tally);
 
 }  // namespace calibrd

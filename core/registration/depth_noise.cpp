@@ -14,10 +14,10 @@ double depth_sigma_m(double z, double cos_incidence, double pixel_m) {
   const double angle = std::acos(cosine);
   const double rest = std::numbers::pi / 2 - angle;
   const double axial_mm =
-      1.5 - 0.5 * z + 0.3 * z * z + 0.1 * std::pow(z, 1.5) * angle * angle / (rest * rest);
+      1.5 - 0.5 * z + 0.3 * z * z + 0.1 * z * std::sqrt(z) * angle * angle / (rest * rest);
   const double slope = std::sqrt(1 - cosine * cosine) / cosine;
   const double lateral_m = kLateralPixels * pixel_m * z * slope;
-  return std::hypot(1e-3 * axial_mm, lateral_m);
+  return std::sqrt(1e-6 * axial_mm * axial_mm + lateral_m * lateral_m);
 }
 
 }  // namespace calibrd

@@ -36,4 +36,20 @@ PointByJoints JointAxes::derivative(int link, const Eigen::Vector3d& p_base) con
   return result;
 }
 
+JointZeros JointAxes::motion_along(int link, const Eigen::Vector3d& p_base,
+                                   const Eigen::Vector3d& direction_base) const {
+  JointZeros result = JointZeros::Zero();
+  const Eigen::Vector3d moment = p_base.cross(direction_base);
+  for (const int index : carriers_[static_cast<std::size_t>(link)]) {
+    const Axis& axis = axes_[static_cast<std::size_t>(index)];
+    // direction·(axis × (p - origin)) = axis·(p × direction) - (axis × origin)·direction
+    const double motion = axis.prismatic
+                              ? axis.direction_base.dot(direction_base)
+                              : axis.direction_base.dot(moment) -
+                                    axis.direction_base.cross(axis.origin_base).dot(direction_base);
+    result[axis.position] += axis.multiplier * motion;
+  }
+  return result;
+}
+
 }  // namespace calibrd

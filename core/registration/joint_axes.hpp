@@ -23,6 +23,10 @@ class JointAxes {
   /// that do not carry the link.
   PointByJoints derivative(int link, const Eigen::Vector3d& p_base) const;
 
+  /// derivative()ᵀ direction: how fast the joints move the point along a direction of the base frame.
+  JointZeros motion_along(int link, const Eigen::Vector3d& p_base,
+                          const Eigen::Vector3d& direction_base) const;
+
  private:
   struct Axis {
     Eigen::Vector3d origin_base, direction_base;

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/registration/joint_axes.hpp"
@@ -36,6 +37,28 @@ struct Observation {
   double robust_weight = 1;  ///< 0..1
 };
 
+/// Tukey's biweight: weight of a residual under a kernel of that half width, 0..1.
+inline double tukey_weight(double residual, double kernel) {
+  const double x = residual / kernel;
+  return x > -1 && x < 1 ? (1 - x * x) * (1 - x * x) : 0;
+}
+
+/// An observation that is kept: as the parameters move by a small δ its residual moves by -J δ.
+struct Sample {
+  Observation observation;
+  std::size_t cluster = 0;
+  double depth_m = 0;  ///< where a range was measured, for choosing the period of its periodic term
+};
+
+/// Images are worked on in bands of so many rows, which no cluster straddles.
+constexpr int kBandRows = 72;
+
+/// Rows of a prediction: [first, end).
+struct RowBand {
+  int first = 0;
+  int end = std::numeric_limits<int>::max();
+};
+
 /// Gauss-Newton sums over observations. Observations are grouped into clusters whose errors may be correlated
 /// (neighbouring pixels): their gradients are kept apart for the covariance.
 class NormalEquations {
@@ -47,7 +70,7 @@ class NormalEquations {
   /// The same sums with every weight multiplied by `factor`.
   NormalEquations scaled(double factor) const;
 
-  const ParameterMatrix& information() const { return information_; }
+  ParameterMatrix information() const;  ///< symmetric
   const ParameterVector& gradient() const { return gradient_; }
   double weight_sum() const { return weight_sum_; }
   double squared_sum() const { return squared_sum_; }  ///< Σ w (r/σ)²
@@ -60,7 +83,6 @@ class NormalEquations {
 
   /// Σ over clusters of g gᵀ: the middle of the sandwich covariance.
   ParameterMatrix cluster_scatter() const;
-  std::size_t cluster_count() const;
 
  private:
   struct Cluster {
@@ -68,7 +90,10 @@ class NormalEquations {
     double whitened_sum = 0;      // Σ w r/σ
     double whitened_squares = 0;  // Σ (w r/σ)²
   };
-  ParameterMatrix information_ = ParameterMatrix::Zero();
+  // Columns are padded to whole vector registers; only what lies on and below the diagonal is kept up.
+  static constexpr int kPadded = (kParameters + 3) / 4 * 4;
+  Eigen::Matrix<double, kPadded, kParameters> information_ =
+      Eigen::Matrix<double, kPadded, kParameters>::Zero();
   ParameterVector gradient_ = ParameterVector::Zero();
   double weight_sum_ = 0, squared_sum_ = 0, residual_squares_ = 0;
   std::size_t count_ = 0;

@@ -16,54 +16,79 @@ namespace {
 // Modulation of 16 to 120 MHz and its harmonics wiggle with periods of this order; longer ones pass for a
 // scale.
 constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.85, 0.97, 1.10, 1.25};
-/// Chance lets the cost fall by as much through an amplitude, a phase and the best of the periods once in a
-/// hundred times.
-constexpr double kSignificantGain = 0;
 /// The cost has a wide minimum over periods: so many samples find it as well as all of them.
-constexpr std::size_t kEnoughSamples = 20000;
+constexpr std::size_t kEnoughSamples = 6000;
+
+/// What is known without a periodic term: each candidate adds but its two rows.
+struct Known {
+  ParameterMatrix information;
+  ParameterVector gradient;
+};
 
 struct Fit {
   double gain;  // how far the cost falls
   ParameterVector solution;
 };
 
-Fit fit_with(std::span<const RangeSample> samples, double sample_weight,
-             const ParameterMatrix& rest_information, const ParameterVector& rest_gradient, double period_m) {
-  ParameterMatrix information = rest_information;
-  ParameterVector gradient = rest_gradient;
-  const std::size_t stride = std::max<std::size_t>(1, samples.size() / kEnoughSamples);
+Fit solved(const Known& known) {
+  const ParameterVector solution = known.information.ldlt().solve(known.gradient);
+  return {known.gradient.dot(solution), solution};
+}
+
+/// Every `stride`-th sample counts for as many, and as `sample_weight` says.
+double weight_of(const Observation& o, double sample_weight, std::size_t stride) {
+  return static_cast<double>(stride) * sample_weight * o.robust_weight / (o.sigma * o.sigma);
+}
+
+Known without_period(std::span<const Sample> samples, double sample_weight, std::size_t stride, Known rest) {
+  NormalEquations sums;
+  for (std::size_t i = 0; i < samples.size(); i += stride) sums.add(samples[i].observation, 0);
+  const double weight = static_cast<double>(stride) * sample_weight;
+  rest.information += weight * ParameterMatrix(sums.information().selfadjointView<Eigen::Lower>());
+  rest.gradient += weight * sums.gradient();
+  return rest;
+}
+
+Fit fit_with(std::span<const Sample> samples, double sample_weight, std::size_t stride, const Known& without,
+             double period_m) {
+  ParameterVector by_sine = ParameterVector::Zero(), by_cosine = ParameterVector::Zero();
+  Eigen::Matrix2d own = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d pull = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const RangeSample& sample = samples[i];
-    const Observation& o = sample.observation;
-    const double weight = static_cast<double>(stride) * sample_weight * o.robust_weight / (o.sigma * o.sigma);
-    ParameterVector jacobian = o.jacobian;
-    const double phase = 2 * std::numbers::pi * sample.depth_m / period_m;
-    jacobian[kSine] = std::sin(phase);
-    jacobian[kCosine] = std::cos(phase);
-    information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    gradient += weight * o.residual * jacobian;
+    const Observation& o = samples[i].observation;
+    const double weight = weight_of(o, sample_weight, stride);
+    if (weight <= 0) continue;
+    const double phase = 2 * std::numbers::pi * samples[i].depth_m / period_m;
+    const Eigen::Vector2d wave(std::sin(phase), std::cos(phase));
+    by_sine += weight * wave[0] * o.jacobian;
+    by_cosine += weight * wave[1] * o.jacobian;
+    own.noalias() += weight * wave * wave.transpose();
+    pull += weight * o.residual * wave;
   }
-  const ParameterMatrix full = information.selfadjointView<Eigen::Lower>();
-  const ParameterVector solution = full.ldlt().solve(gradient);
-  return {gradient.dot(solution), solution};
+  Known known = without;
+  known.information.col(kSine) += by_sine;
+  known.information.row(kSine) += by_sine.transpose();
+  known.information.col(kCosine) += by_cosine;
+  known.information.row(kCosine) += by_cosine.transpose();
+  known.information.block<2, 2>(kSine, kSine) += own;
+  known.gradient.segment<2>(kSine) += pull;
+  return solved(known);
 }
 
 }  // namespace
 
-std::optional<PeriodicTerm> find_period(std::span<const RangeSample> samples, double sample_weight,
+std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double sample_weight,
                                         const ParameterMatrix& rest_information,
                                         const ParameterVector& rest_gradient) {
-  // Without a periodic term: hold its amplitudes at 0.
-  ParameterMatrix held = rest_information;
-  held(kSine, kSine) += 1e12;
-  held(kCosine, kCosine) += 1e12;
-  const double base = fit_with(samples, sample_weight, held, rest_gradient, kCandidates_m[0]).gain;
+  const std::size_t stride = std::max<std::size_t>(1, samples.size() / kEnoughSamples);
+  const Known without = without_period(samples, sample_weight, stride,
+                                       {rest_information.selfadjointView<Eigen::Lower>(), rest_gradient});
   std::array<Fit, std::size(kCandidates_m)> fits;
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
-    fits[i] = fit_with(samples, sample_weight, rest_information, rest_gradient, kCandidates_m[i]);
+    fits[i] = fit_with(samples, sample_weight, stride, without, kCandidates_m[i]);
   });
   const auto best = std::ranges::max_element(fits, {}, &Fit::gain);
-  if (best->gain <= base + kSignificantGain) return std::nullopt;
+  if (best->gain <= solved(without).gain) return std::nullopt;
   return PeriodicTerm{kCandidates_m[best - fits.begin()], best->solution[kSine], best->solution[kCosine]};
 }
 

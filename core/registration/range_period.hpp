@@ -10,12 +10,12 @@ namespace calibrd {
 /// The period (m) of the range's periodic term that explains the samples best, everything else solved for
 /// beside it. `rest` holds what else is known (contours, priors): information and gradient. The solution is
 /// linear in sine and cosine for each candidate, so no rendering is needed. `sample_weight`:
-/// correlation-aware weight of the samples. Returns nothing when no candidate explains significantly more
-/// than no periodic term at all.
+/// correlation-aware weight of the samples, whose Jacobians hold nothing of a periodic term. Returns nothing
+/// when no candidate explains more than no periodic term at all.
 struct PeriodicTerm {
   double period_m, sin_m, cos_m;
 };
-std::optional<PeriodicTerm> find_period(std::span<const RangeSample> samples, double sample_weight,
+std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double sample_weight,
                                         const ParameterMatrix& rest_information,
                                         const ParameterVector& rest_gradient);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/registration/range_residuals.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,14 +14,9 @@ namespace {
 /// Pixels on a block of this side share a cluster: their errors (filters, surface texture, mesh errors)
 /// correlate.
 constexpr int kBlockSide = 24;
+static_assert(kBandRows % kBlockSide == 0);
 /// Predicted depth may step this share of its depth to a neighbour before the pixel counts as rim.
 constexpr float kRimStep = 0.025F;
-
-double tukey_weight(double residual, double kernel) {
-  const double x = residual / kernel;
-  if (std::abs(x) >= 1) return 0;
-  return (1 - x * x) * (1 - x * x);
-}
 
 /// Derivative of the periodic term by sine, cosine and period.
 Eigen::Vector3d periodic_jacobian(const DepthCorrection& correction, double z) {
@@ -56,7 +52,7 @@ ParameterVector jacobian_of(const RegistrationView& view, int link, const Pose& 
   const double factor = -correction.slope(z) * z / n.dot(p_sensor);
   ParameterVector jacobian;
   jacobian << factor * u_base.cross(n_base), factor * n_base, 1.0, z, periodic_jacobian(correction, z), 0.0,
-      0.0, -factor * view.axes.derivative(link, T_base_sensor.translation() + u_base).transpose() * n_base;
+      0.0, -factor * view.axes.motion_along(link, T_base_sensor.translation() + u_base, n_base);
   return jacobian;
 }
 
@@ -78,39 +74,54 @@ void RangeTally::merge(const RangeTally& other) {
   whitened.insert(whitened.end(), other.whitened.begin(), other.whitened.end());
 }
 
-void add_range_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
-                         const CameraModel& camera, const Pose& T_base_sensor,
-                         const DepthCorrection& correction, const RangeSettings& settings,
-                         NormalEquations& equations, RangeTally& tally, std::vector<RangeSample>* samples) {
-  const int blocks_per_row = camera.width / kBlockSide + 1;
-  for (int y = 0; y < camera.height; y += settings.stride) {
-    for (int x = 0; x < camera.width; x += settings.stride) {
-      const std::size_t i =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
-      if (prediction.link[i] < 0 || is_rim(prediction, x, y)) continue;
+void observe_range(const RegistrationView& view, const VirtualMeasurement& prediction,
+                   const CameraModel& camera, const Pose& T_base_sensor, const DepthCorrection& correction,
+                   const RangeSettings& settings, const RowBand& rows, std::vector<Sample>& samples,
+                   RangeTally& tally) {
+  const int step = settings.prediction_step, blocks_per_row = camera.width / kBlockSide + 1;
+  const double pixel_size = 1 / camera.fx;
+  for (int row = rows.first; row < std::min(rows.end, prediction.height); row += settings.stride) {
+    for (int column = 0; column < prediction.width; column += settings.stride) {
+      const std::size_t i = prediction.index(column, row);
+      if (prediction.link[i] < 0 || is_rim(prediction, column, row)) continue;
+      const int x = column * step, y = row * step;
       const double z = prediction.depth_m[i];
       const Eigen::Vector3d d = view.rays->at(x, y);
       const Eigen::Vector3d n = prediction.normal[i].cast<double>();
-      const double slope = n.dot(d);  // below 0: normals face the sensor
-      const double cos_incidence = -slope / d.norm();
+      const double cos_incidence = -n.dot(d) / d.norm();  // normals face the sensor
       if (cos_incidence < settings.min_cos_incidence) continue;
       ++tally.predicted;
-      if (view.depth_m[i] <= 0) continue;
+      const double measured_m =
+          view.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                       static_cast<std::size_t>(x)];
+      if (measured_m <= 0) continue;
 
-      Observation o;
-      o.residual = view.depth_m[i] - correction.measured(z);
-      count(o.residual, settings.kernel_m, tally);
-      o.robust_weight = tukey_weight(o.residual, settings.kernel_m);
+      const double residual = measured_m - correction.measured(z);
+      count(residual, settings.kernel_m, tally);
+      if (std::abs(residual) >= settings.kept_kernels * settings.kernel_m) continue;
+      Sample& sample = samples.emplace_back();
+      sample.depth_m = z;
+      sample.cluster =
+          static_cast<std::size_t>((y - rows.first * step) / kBlockSide * blocks_per_row + x / kBlockSide);
+      Observation& o = sample.observation;
+      o.residual = residual;
+      o.robust_weight = tukey_weight(residual, settings.kernel_m);
+      o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, pixel_size);
+      o.jacobian = jacobian_of(view, prediction.link[i], T_base_sensor, correction, z * d, n);
       if (o.robust_weight <= 0) continue;
       ++tally.agreeing;
-      o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, 1 / camera.fx);
       tally.whitened.push_back(static_cast<float>(o.residual / o.sigma));
-
-      o.jacobian = jacobian_of(view, prediction.link[i], T_base_sensor, correction, z * d, n);
-      if (samples != nullptr) samples->push_back({o, z});
-      equations.add(o, static_cast<std::size_t>(y / kBlockSide * blocks_per_row + x / kBlockSide));
     }
   }
+}
+
+void add_range_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
+                         const CameraModel& camera, const Pose& T_base_sensor,
+                         const DepthCorrection& correction, const RangeSettings& settings,
+                         NormalEquations& equations, RangeTally& tally) {
+  std::vector<Sample> samples;
+  observe_range(view, prediction, camera, T_base_sensor, correction, settings, {}, samples, tally);
+  for (const Sample& sample : samples) equations.add(sample.observation, sample.cluster);
 }
 
 }  // namespace calibrd

@@ -11,7 +11,9 @@ struct RangeSettings {
   double kernel_m = 0.03;           ///< residuals beyond this have no weight (Tukey's biweight)
   double sigma_factor = 1;          ///< this sensor's noise over depth_sigma_m()
   double min_cos_incidence = 0.25;  ///< flatter surfaces say more about the pixel grid than about the pose
-  int stride = 1;                   ///< every stride-th pixel in both directions
+  int stride = 1;                   ///< every stride-th pixel of the prediction in both directions
+  int prediction_step = 1;          ///< the prediction is that of camera.subsampled(prediction_step)
+  double kept_kernels = 1;          ///< samples are kept up to so many kernels: weight may yet come to them
 };
 
 /// What the pixels of one view say about its prediction.
@@ -25,20 +27,19 @@ struct RangeTally {
   void merge(const RangeTally& other);
 };
 
-/// A range observation together with the depth it was made at, for choosing the period of the periodic term.
-struct RangeSample {
-  Observation observation;
-  double depth_m = 0;
-};
-
 /// Point-to-plane residuals on projective pairs: the measured depth of a pixel against the depth the virtual
 /// sensor sees there. A residual along the ray divided by its own sigma is the point-to-plane distance with
-/// weight 1/((n·d)²σ²). `prediction` must be what `view.cell` shows from `T_base_sensor`. The observations
-/// are also appended to `samples` when it is given.
+/// weight 1/((n·d)²σ²). `prediction` must be what `view.cell` shows from `T_base_sensor`; rows of it outside
+/// of `rows`, which begin at a multiple of kBandRows of the image, are left out. Appends to `samples`.
+void observe_range(const RegistrationView& view, const VirtualMeasurement& prediction,
+                   const CameraModel& camera, const Pose& T_base_sensor, const DepthCorrection& correction,
+                   const RangeSettings& settings, const RowBand& rows, std::vector<Sample>& samples,
+                   RangeTally& tally);
+
+/// The same, summed.
 void add_range_residuals(const RegistrationView& view, const VirtualMeasurement& prediction,
                          const CameraModel& camera, const Pose& T_base_sensor,
                          const DepthCorrection& correction, const RangeSettings& settings,
-                         NormalEquations& equations, RangeTally& tally,
-                         std::vector<RangeSample>* samples = nullptr);
+                         NormalEquations& equations, RangeTally& tally);
 
 }  // namespace calibrd

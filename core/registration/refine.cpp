@@ -3,24 +3,23 @@
 #include "core/registration/refine.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/registration/covariance.hpp"
+#include "core/registration/linearization.hpp"
 #include "core/registration/range_period.hpp"
 #include "core/registration/repeated_postures.hpp"
 #include "core/registration/reported_joints.hpp"
-#include "core/registration/view_sums.hpp"
 
 namespace calibrd {
 namespace {
 
 /// One stage of the annealing: kernels and freedoms.
 struct Stage {
-  int iterations;
-  int stride;                // of pixels in both directions, and of contour pixels along the contour
+  int renderings;            // at most; each is good for kStepsPerRendering steps
+  int stride;                // of pixels in both directions
   double range_kernel_m;     // 0: from the noise found
   double contour_search_px;  // 0: no contours yet
   bool fit_profile;          // fit modelled light profiles to the contours rather than find the steepest step
@@ -30,7 +29,10 @@ struct Stage {
 
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
-constexpr int kFullSteps = 5;
+constexpr int kStepsPerRendering = 3;
+constexpr double kSettled = 0.1;  // sigmas: a step so small is the last on one rendering
+constexpr int kContourStride = 2;
+constexpr int kFullMoves = 3;
 /// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
 /// errors.
 constexpr double kMinEdgeScatter = 0.5;
@@ -56,12 +58,12 @@ class Refiner {
   }
 
   Refinement run() {
-    const Stage stages[] = {{4, 3, 0.06, 0, false, false, false},
-                            {4, 3, 0.03, 10, false, true, false},
-                            {3, 2, 0, 5, false, true, false}};
+    const Stage stages[] = {{1, 3, 0.06, 0, false, false, false},
+                            {1, 3, 0.03, 10, false, true, false},
+                            {1, 2, 0, 5, false, true, false}};
     const bool zeros = settings_.joint_zero_prior > 0;
-    Stage closing{settings_.final_iterations, 2, 0, 3, true, true, zeros};
-    Stage last{5, 1, 0, 3, true, true, zeros};
+    Stage closing{settings_.final_renderings, 2, 0, 3, true, true, zeros};
+    Stage last{3, 1, 0, 3, true, true, zeros};
     const Stage judged = last;  // what is known is known with the zeros free, whether they are used or not
     double progress = 0;
     for (const Stage& stage : stages) {
@@ -69,13 +71,12 @@ class Refiner {
       progress += 0.25;
       if (settings_.keep_going && !settings_.keep_going(progress)) return result_;
     }
-    step(closing, 0);
+    move(closing, 0);
     choose_period(closing);
     run_stage(closing);
     if (zeros && fall_by_joint_zeros(last_information_, result_.joint_zeros) < kSignificantFall) {
       closing.free_zeros = last.free_zeros = false;
       set_zeros(JointZeros::Zero());
-      run_stage(closing);
     }
     run_stage(last);
     finish(judged);
@@ -84,18 +85,19 @@ class Refiner {
 
  private:
   void run_stage(const Stage& stage) {
-    small_step_ = false;
-    for (int i = 0; i < stage.iterations && !small_step_; ++i) step(stage, i);
+    moves_.clear();
+    for (int i = 0; i < stage.renderings && (i == 0 || last_move_ > settings_.convergence_sigmas); ++i)
+      move(stage, i);
   }
 
-  ViewSums collect(const Stage& stage, bool keep_samples = false) {
-    ViewSumSettings settings;
+  void linearize(const Stage& stage) {
+    LinearizationSettings settings;
     settings.range = range_settings(stage);
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
       settings.contour[k] = contour_settings(stage, kEdgeSources[k]);
-    settings.contour_stride = stage.contour_search_px > 0 ? stage.stride + 2 : 0;
-    settings.keep_samples = keep_samples;
-    return sum_views(views_, predictions_, camera_, result_.T_base_sensor, result_.correction, settings);
+    settings.stride = stage.stride;
+    settings.contour_stride = stage.contour_search_px > 0 ? kContourStride : 0;
+    latest_.observe(views_, predictions_, camera_, result_.T_base_sensor, result_.correction, settings);
   }
 
   ContourSettings contour_settings(const Stage& stage, EdgeSource source) const {
@@ -114,7 +116,7 @@ class Refiner {
 
   RangeSettings range_settings(const Stage& stage) const {
     RangeSettings range;
-    range.stride = stage.stride;
+    range.kept_kernels = 1.5;
     range.sigma_factor = result_.sigma_factor;
     const double noise_m = result_.sigma_factor * 1.6e-3;
     range.kernel_m = stage.range_kernel_m > 0 ? stage.range_kernel_m
@@ -122,21 +124,25 @@ class Refiner {
     return range;
   }
 
-  /// Weighs range and contour by what their own scatter says they are worth.
-  NormalEquations weighed(const ViewSums& sums, bool scatter_is_noise) {
-    if (scatter_is_noise) {
-      result_.range_correlation = sums.range.correlation_factor();
-    }
+  /// Takes from the scatter what it says of the noise.
+  void note_noise(const ViewSums& sums) {
+    result_.range_correlation = sums.range.correlation_factor();
+    for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
+      edge_noise_[k].correlation = sums.contour[k].equations.correlation_factor();
+    noise_found_ = std::clamp(result_.sigma_factor * robust_sigma(sums.range_tally.whitened), 0.3, 20.0);
+  }
+
+  void note_edges(const ViewSums& sums) {
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
-      const ContourSums& edges = sums.contour[k];
-      if (scatter_is_noise) edge_noise_[k].correlation = edges.equations.correlation_factor();
-      if (!edges.tally.residuals_px.empty()) edge_noise_[k].sigma_px = robust_sigma(edges.tally.residuals_px);
+      const auto& residuals_px = sums.contour[k].tally.residuals_px;
+      if (!residuals_px.empty()) edge_noise_[k].sigma_px = robust_sigma(residuals_px);
     }
+  }
+
+  /// Range and contour, each by what its own scatter says it is worth.
+  NormalEquations weighed(const ViewSums& sums) const {
     NormalEquations all = sums.range.scaled(range_weight(sums));
     all.merge(contour_part(sums));
-    if (scatter_is_noise)
-      result_.sigma_factor =
-          std::clamp(result_.sigma_factor * robust_sigma(sums.range_tally.whitened), 0.3, 20.0);
     return all;
   }
 
@@ -154,12 +160,14 @@ class Refiner {
     return all;
   }
 
-  /// Everything known before the views were seen, as one observation per parameter.
-  void add_priors(const Stage& stage, ParameterMatrix& information, ParameterVector& gradient) const {
+  /// Everything known before the views were seen, as one observation per parameter. `delta`: how far the
+  /// parameters have moved from result_.
+  void add_priors(const Stage& stage, const ParameterVector& delta, ParameterMatrix& information,
+                  ParameterVector& gradient) const {
     constexpr double kHeld = 1e-7;
     const auto add = [&](Parameter parameter, double value, double sigma) {
       information(parameter, parameter) += 1 / (sigma * sigma);
-      gradient[parameter] -= value / (sigma * sigma);
+      gradient[parameter] -= (value + delta[parameter]) / (sigma * sigma);
     };
     const DepthCorrection& c = result_.correction;
     const bool periodic = c.periodic_period_m > 0;
@@ -177,39 +185,52 @@ class Refiner {
     information.diagonal().head<6>().array() += 1e-9 * information.diagonal().head<6>().maxCoeff();
   }
 
-  ParameterMatrix with_priors(const NormalEquations& all, const Stage& stage,
+  ParameterMatrix with_priors(const NormalEquations& all, const Stage& stage, const ParameterVector& delta,
                               ParameterVector& gradient) const {
     ParameterMatrix information = all.information().selfadjointView<Eigen::Lower>();
     gradient = all.gradient();
-    add_priors(stage, information, gradient);
+    add_priors(stage, delta, information, gradient);
     return information;
   }
 
+  /// From what the last rendering showed, before its move.
   void choose_period(const Stage& stage) {
-    const ViewSums sums = collect(stage, true);
-    weighed(sums, true);
-    ParameterMatrix information = contour_part(sums).information();
-    ParameterVector gradient = contour_part(sums).gradient();
-    add_priors(stage, information, gradient);
-    if (const auto term = find_period(sums.samples, range_weight(sums), information, gradient)) {
+    const ViewSums sums = latest_.sums(ParameterVector::Zero());
+    const NormalEquations edges = contour_part(sums);
+    ParameterMatrix information = edges.information();
+    ParameterVector gradient = edges.gradient();
+    add_priors(stage, -latest_delta_, information, gradient);
+    if (const auto term = find_period(latest_.range_samples(), range_weight(sums), information, gradient)) {
       result_.correction.periodic_period_m = period_start_m_ = term->period_m;
       result_.correction.periodic_sin_m = term->sin_m;
       result_.correction.periodic_cos_m = term->cos_m;
     }
   }
 
-  void step(const Stage& stage, int iteration) {
-    const ViewSums sums = collect(stage);
-    const NormalEquations all = weighed(sums, stage.range_kernel_m == 0);
-    if (all.count() < 50) return;
-    ParameterVector gradient;
-    const ParameterMatrix information = with_priors(all, stage, gradient);
-    // Image edges and pixels change sides between steps; halved steps settle that jitter.
-    const double pace = iteration < kFullSteps ? 1.0 : 0.5;
-    const Eigen::LDLT<ParameterMatrix> solver(information);
-    const ParameterVector full_step = solver.solve(gradient);
-    const ParameterVector delta = pace * full_step;
-    note_step(full_step.head<6>(), solver);
+  /// Renders once and moves to where the steps lead.
+  void move(const Stage& stage, int rendering) {
+    linearize(stage);
+    ParameterVector delta = ParameterVector::Zero();
+    for (int step = 0; step < kStepsPerRendering; ++step) {
+      const ViewSums sums = latest_.sums(delta);
+      if (step == 0 && stage.range_kernel_m == 0) note_noise(sums);
+      if (step == 0) note_edges(sums);
+      const NormalEquations all = weighed(sums);
+      if (all.count() < 50) return;
+      ParameterVector gradient;
+      last_information_ = with_priors(all, stage, delta, gradient);
+      const ParameterVector full_step = last_information_.ldlt().solve(gradient);
+      delta += full_step;
+      if (full_step.dot(gradient) < kSettled * kSettled) break;
+    }
+    if (stage.range_kernel_m == 0) result_.sigma_factor = noise_found_;
+    note_move(delta.head<6>());
+    // Image edges and pixels change sides between renderings; halved moves settle that jitter.
+    latest_delta_ = (rendering < kFullMoves ? 1.0 : 0.5) * delta;
+    apply(latest_delta_, stage.free_zeros);
+  }
+
+  void apply(const ParameterVector& delta, bool zeros_too) {
     result_.T_base_sensor = perturbed(result_.T_base_sensor, delta.head<6>());
     DepthCorrection& c = result_.correction;
     c.offset_m += delta[kOffset];
@@ -221,9 +242,7 @@ class Refiner {
     }
     result_.image_shift_px += delta[kImageShift];
     result_.depth_shift_px += delta[kDepthShift];
-    if (stage.free_zeros) set_zeros(result_.joint_zeros + delta.tail<kMaxJointZeros>());
-    last_information_ = information;
-    small_step_ = std::sqrt(delta.dot(information * delta)) < settings_.convergence_sigmas;
+    if (zeros_too) set_zeros(result_.joint_zeros + delta.tail<kMaxJointZeros>());
   }
 
   void set_zeros(const JointZeros& zeros) {
@@ -231,28 +250,28 @@ class Refiner {
     for (RegistrationView& view : views_) view.apply_zeros(zeros);
   }
 
-  /// How far the pose still drifts: the mean of the last steps, whole ones, in its own standard deviations.
-  /// Pixels that change sides make single steps jitter; what has not settled keeps its direction.
-  void note_step(const Vector6d& pose_step, const Eigen::LDLT<ParameterMatrix>& information) {
+  /// How far the pose still drifts: the mean of the stage's last moves, whole ones, in its own standard
+  /// deviations. Pixels that change sides make single moves jitter; what has not settled keeps its direction
+  /// and its size.
+  void note_move(const Vector6d& pose_move) {
     constexpr std::size_t kRemembered = 2;
-    last_steps_.push_back(pose_step);
-    if (last_steps_.size() > kRemembered) last_steps_.erase(last_steps_.begin());
+    moves_.push_back(pose_move);
+    if (moves_.size() > kRemembered) moves_.erase(moves_.begin());
     Vector6d mean = Vector6d::Zero();
-    for (const Vector6d& step : last_steps_) mean += step / static_cast<double>(last_steps_.size());
-    const ParameterMatrix covariance = information.solve(ParameterMatrix::Identity());
-    const Matrix6d of_pose = covariance.topLeftCorner<6, 6>();
-    result_.last_step_sigmas = std::sqrt(mean.dot(of_pose.ldlt().solve(mean)) / 6);
+    for (const Vector6d& move : moves_) mean += move / static_cast<double>(moves_.size());
+    const ParameterMatrix covariance = last_information_.ldlt().solve(ParameterMatrix::Identity());
+    const Eigen::LDLT<Matrix6d> of_pose(covariance.topLeftCorner<6, 6>());
+    last_move_ = std::sqrt(pose_move.dot(of_pose.solve(pose_move)) / 6);
+    result_.last_step_sigmas = std::min(last_move_, std::sqrt(mean.dot(of_pose.solve(mean)) / 6));
   }
 
   void finish(const Stage& stage) {
-    ViewSums sums = collect(stage);
-    const NormalEquations all = weighed(sums, true);
+    ViewSums sums = latest_.sums(latest_delta_);
+    const NormalEquations all = weighed(sums);
     ParameterVector gradient;
-    const ParameterMatrix information = with_priors(all, stage, gradient);
+    const ParameterMatrix information = with_priors(all, stage, ParameterVector::Zero(), gradient);
     publish_for_reported_joints(parameter_covariance(information, all));
     result_.residual_rms_m = sums.range.rms_residual();
-    const Matrix6d pose_information = information.topLeftCorner<6, 6>();
-    result_.weakest_eigenvalue = Eigen::SelfAdjointEigenSolver<Matrix6d>(pose_information).eigenvalues()[0];
     result_.range = std::move(sums.range_tally);
     result_.contour = std::move(sums.contour[0].tally);
     result_.depth_contour = std::move(sums.contour[1].tally);
@@ -276,11 +295,14 @@ class Refiner {
   const RefineSettings& settings_;
   std::vector<VirtualMeasurement> predictions_;
   Refinement result_;
-  std::vector<Vector6d> last_steps_;
+  Linearization latest_;
+  ParameterVector latest_delta_ = ParameterVector::Zero();  // moved since
+  std::vector<Vector6d> moves_;                             // of the stage
   ParameterMatrix last_information_ = ParameterMatrix::Zero();
   double period_start_m_ = 0;
   std::array<EdgeNoise, 2> edge_noise_;  // by EdgeSource
-  bool small_step_ = false;
+  double noise_found_ = 1;               // sigma_factor as the last scatter has it
+  double last_move_ = 0;                 // of the pose, in its own standard deviations
 };
 
 }  // namespace

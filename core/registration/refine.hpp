@@ -20,9 +20,9 @@ struct RefineSettings {
   double depth_shift_prior_px = 2;  ///< stereo fattens what stands in front, time of flight frays it
   double joint_zero_prior = 1e-3;   ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
   bool use_depth_outline = true;    ///< false: range alone, and images where there are any
-  int final_iterations = 12;
-  /// A step this small against the uncertainty of the result ends the iteration.
-  double convergence_sigmas = 0.15;
+  int final_renderings = 5;
+  /// A move this small against the uncertainty of the result ends the iteration.
+  double convergence_sigmas = 0.3;
   std::function<bool(double)> keep_going;  ///< called with the progress 0..1; false ends the refinement early
 };
 
@@ -37,11 +37,10 @@ struct Refinement {
   /// Edges lie this far (px) outside the predicted contours, in the image and in the depth.
   double image_shift_px = 0, depth_shift_px = 0;
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  double last_step_sigmas = 0;    ///< drift of the pose over the last steps, in its own standard deviations
-  double residual_rms_m = 0;      ///< of the range residuals that agree
-  double sigma_factor = 1;        ///< noise found over noise expected
-  double range_correlation = 1;   ///< times that range errors are less independent than their number says
-  double weakest_eigenvalue = 0;  ///< smallest eigenvalue of the pose information (m⁻², rotation at 1 m)
+  double last_step_sigmas = 0;   ///< drift of the pose over the last moves, in its own standard deviations
+  double residual_rms_m = 0;     ///< of the range residuals that agree
+  double sigma_factor = 1;       ///< noise found over noise expected
+  double range_correlation = 1;  ///< times that range errors are less independent than their number says
   RangeTally range;
   ContourTally contour;        ///< of the image
   ContourTally depth_contour;  ///< of the depth

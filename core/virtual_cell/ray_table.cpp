@@ -7,7 +7,7 @@
 namespace calibrd {
 
 RayTable::RayTable(const CameraModel& camera)
-    : camera_(camera),
+    : pixel_rays_(camera),
       columns_((camera.width + kPacketWidth - 1) / kPacketWidth),
       rows_((camera.height + kPacketHeight - 1) / kPacketHeight),
       packets_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
@@ -18,7 +18,7 @@ RayTable::RayTable(const CameraModel& camera)
         // Packets that stick out of the image repeat its last pixel, so that every ray is valid.
         const int u = std::min(column * kPacketWidth + k % kPacketWidth, camera.width - 1);
         const int v = std::min(row * kPacketHeight + k / kPacketWidth, camera.height - 1);
-        const Eigen::Vector2f direction = camera.ray(u, v).head<2>().cast<float>();
+        const Eigen::Vector2f direction = pixel_rays_.at(u, v).head<2>().cast<float>();
         packet.x[k] = direction.x();
         packet.y[k] = direction.y();
         packet.bounds.extend(direction);
@@ -28,9 +28,10 @@ RayTable::RayTable(const CameraModel& camera)
 }
 
 bool RayTable::fits(const CameraModel& camera) const {
-  return camera.width == camera_.width && camera.height == camera_.height && camera.fx == camera_.fx &&
-         camera.fy == camera_.fy && camera.cx == camera_.cx && camera.cy == camera_.cy &&
-         camera.distortion == camera_.distortion;
+  const CameraModel& own = pixel_rays_.camera();
+  return camera.width == own.width && camera.height == own.height && camera.fx == own.fx &&
+         camera.fy == own.fy && camera.cx == own.cx && camera.cy == own.cy &&
+         camera.distortion == own.distortion;
 }
 
 }  // namespace calibrd

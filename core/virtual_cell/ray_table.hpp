@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/camera_model.hpp"
+#include "core/geometry/pixel_rays.hpp"
 
 namespace calibrd {
 
@@ -25,6 +25,7 @@ class RayTable {
   explicit RayTable(const CameraModel& camera);
 
   bool fits(const CameraModel& camera) const;
+  const PixelRays& pixel_rays() const { return pixel_rays_; }
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   const Packet& packet(int column, int row) const {
@@ -33,7 +34,7 @@ class RayTable {
   }
 
  private:
-  CameraModel camera_;
+  PixelRays pixel_rays_;
   int columns_ = 0, rows_ = 0;
   std::vector<Packet> packets_;
 };

@@ -7,7 +7,7 @@
 namespace calibrd {
 
 std::shared_ptr<const RayTable> RayTables::of(const CameraModel& camera) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMost = 10;
   {
     const std::lock_guard lock(mutex_);
     const auto known = std::ranges::find_if(tables_, [&](const auto& table) { return table->fits(camera); });

@@ -55,6 +55,15 @@ RTCRayHit8 make_rays(const RayTable::Packet& packet, const Eigen::Matrix3f& R_ba
   return rays;
 }
 
+/// Nothing hit in rows [first, end), or to the last one.
+void clear_rows(int first, int end, VirtualMeasurement& out) {
+  const auto from = static_cast<std::ptrdiff_t>(first) * out.width,
+             to = static_cast<std::ptrdiff_t>(std::min(end, out.height)) * out.width;
+  std::fill(out.depth_m.begin() + from, out.depth_m.begin() + to, 0.0F);
+  std::fill(out.normal.begin() + from, out.normal.begin() + to, Eigen::Vector3f::Zero());
+  std::fill(out.link.begin() + from, out.link.begin() + to, std::int16_t{-1});
+}
+
 }  // namespace
 
 struct VirtualCell::Impl {
@@ -168,6 +177,11 @@ SurfaceHit VirtualCell::hit_along(const Eigen::Vector3d& direction_sensor, const
 
 const RobotModel& VirtualCell::robot() const { return *impl_->robot; }
 
+std::shared_ptr<const PixelRays> VirtualCell::pixel_rays(const CameraModel& camera) const {
+  const std::shared_ptr<const RayTable> table = impl_->ray_tables->of(camera);
+  return {table, &table->pixel_rays()};
+}
+
 const std::vector<Pose>& VirtualCell::link_poses() const { return impl_->T_base_link; }
 
 void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,
@@ -175,9 +189,9 @@ void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   out.width = camera.width;
   out.height = camera.height;
-  out.depth_m.assign(pixels, 0.0F);
-  out.normal.assign(pixels, Eigen::Vector3f::Zero());
-  out.link.assign(pixels, std::int16_t{-1});
+  out.depth_m.resize(pixels);
+  out.normal.resize(pixels);
+  out.link.resize(pixels);
   if (!impl_->rays || !impl_->rays->fits(camera)) impl_->rays = impl_->ray_tables->of(camera);
 
   std::vector<Eigen::Matrix3f> R_sensor_link;
@@ -191,6 +205,7 @@ void VirtualCell::measure(const CameraModel& camera, const Pose& T_base_sensor,
   const Eigen::Isometry3f T = T_base_sensor.cast<float>();
   const RayTable& rays = *impl_->rays;
   tbb::parallel_for(tbb::blocked_range<int>(0, rays.rows(), 8), [&](const tbb::blocked_range<int>& rows) {
+    clear_rows(rows.begin() * RayTable::kPacketHeight, rows.end() * RayTable::kPacketHeight, out);
     for (int row = rows.begin(); row < rows.end(); ++row) {
       for (int column = 0; column < rays.columns(); ++column) {
         const RayTable::Packet& packet = rays.packet(column, row);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/camera_model.hpp"
+#include "core/geometry/pixel_rays.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/robot/robot_model.hpp"
 
@@ -21,6 +22,10 @@ struct VirtualMeasurement {
   std::vector<Eigen::Vector3f>
       normal;                      ///< unit, sensor frame, towards the sensor; zero where nothing was hit
   std::vector<std::int16_t> link;  ///< index into RobotModel::links(); -1 = nothing hit
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
 };
 
 /// What one ray meets.
@@ -52,6 +57,9 @@ class VirtualCell {
   SurfaceHit hit_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
 
   const RobotModel& robot() const;
+
+  /// The viewing directions of a camera, made once for this cell and its copies.
+  std::shared_ptr<const PixelRays> pixel_rays(const CameraModel& camera) const;
 
   /// T_base_link of every link of the robot at the current joints.
   const std::vector<Pose>& link_poses() const;

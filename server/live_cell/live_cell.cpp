@@ -249,11 +249,11 @@ Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {
   return clouds_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
 }
 
-Estimator core_estimator(const RobotModel& model, const VirtualCell& cell) {
+Estimator core_estimator(const VirtualCell& cell) {
   Estimator estimator;
-  estimator.calibrate = [&model](const CameraModel& camera, std::span<const View> views,
-                                 const CalibrationSettings& settings) {
-    return calibrate(model, camera, views, settings);
+  estimator.calibrate = [&cell](const CameraModel& camera, std::span<const View> views,
+                                const CalibrationSettings& settings) {
+    return calibrate(cell, camera, views, settings);
   };
   estimator.make_check = [&cell](const CameraModel& camera) -> CheckFunction {
     return [checker = std::make_shared<PoseChecker>(cell, camera)](

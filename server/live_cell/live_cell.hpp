@@ -116,6 +116,6 @@ class LiveCell : public api::CellService {
 };
 
 /// core's estimator for this robot. The returned functions refer to `model` and `cell`.
-Estimator core_estimator(const RobotModel& model, const VirtualCell& cell);
+Estimator core_estimator(const VirtualCell& cell);
 
 }  // namespace calibrd

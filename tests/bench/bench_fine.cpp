@@ -69,7 +69,7 @@ int run_fine(const FineOptions& options) {
   }
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<double> share(0, 1);
-  std::vector<double> milliseconds;
+  std::vector<double> milliseconds, with_verdict;
   const auto guess = [&] {
     const double size = options.vary ? share(random) : 1.0;
     return off_by(*reference, size * options.offset_mm * 1e-3,
@@ -79,16 +79,20 @@ int run_fine(const FineOptions& options) {
   settings.depth_only = options.depth_only;
   settings.guess_T_base_sensor = guess();
   Vector6d error = Vector6d::Zero();
+  const VirtualCell cell(input.robot);
   for (int run = 0; run < options.runs; ++run) {
     if (options.vary && run > 0) settings.guess_T_base_sensor = guess();
-    const CalibrationResult result = calibrate(input.robot, input.camera, input.views, settings);
-    milliseconds.push_back(result.time_total_ms);
+    const CalibrationResult result = calibrate(cell, input.camera, input.views, settings);
+    milliseconds.push_back(result.time_to_pose_ms);
+    with_verdict.push_back(result.time_total_ms);
     if (options.vary || run == 0) print_run(input, result, *reference);
     if (result.T_base_sensor) error = difference(*reference, *result.T_base_sensor);
   }
-  std::printf("{\"median_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, \"views\": %zu}\n",
-              median(milliseconds), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
-              input.views.size());
+  std::printf(
+      "{\"median_ms\": %.2f, \"median_with_verdict_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, "
+      "\"views\": %zu}\n",
+      median(milliseconds), median(with_verdict), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
+      input.views.size());
   return 0;
 }
 

@@ -37,8 +37,9 @@ int run_global(const GlobalOptions& options) {
   settings.depth_only = options.depth_only;
   std::vector<double> milliseconds;
   CalibrationResult result;
+  const VirtualCell cell(input.robot);
   for (int run = 0; run < options.runs; ++run) {
-    result = calibrate(input.robot, input.camera, input.views, settings);
+    result = calibrate(cell, input.camera, input.views, settings);
     milliseconds.push_back(result.time_total_ms);
   }
   const Pose reference = input.truth_T_base_sensor.value_or(result.T_base_sensor.value_or(Pose::Identity()));

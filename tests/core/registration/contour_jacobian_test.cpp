@@ -74,9 +74,11 @@ TEST_P(ContourJacobian, EqualsTheSlopeOfTheRenderedOutline) {
     ContourSettings settings;
     NormalEquations equations;
     ContourTally tally;
-    const auto contour =
-        find_contour(view, measured(board.cell, board.camera, T_base_sensor), board.camera, T_base_sensor, 1);
-    add_contour_residuals(view, contour, board.camera, T_base_sensor, settings, equations, tally);
+    const auto contour = find_contour(view, measured(board.cell, board.camera, T_base_sensor), board.camera,
+                                      T_base_sensor, {1, 1, {}});
+    std::vector<Sample> samples;
+    observe_contour(view, contour, board.camera, T_base_sensor, settings, samples, tally);
+    for (const Sample& sample : samples) equations.add(sample.observation, sample.cluster);
     ASSERT_EQ(tally.found, 1U) << "of " << tally.predicted;
     const ParameterMatrix information = equations.information().selfadjointView<Eigen::Lower>();
     const double weight = information(kImageShift, kImageShift);  // w J Jᵀ, where J is 1 for the shift
@@ -111,8 +113,10 @@ NormalEquations contour_sums(std::span<const RegistrationView> views, const Came
   for (const RegistrationView& view : views) {
     NormalEquations of_view;
     const auto contour =
-        find_contour(view, measured(view.cell, camera, T_base_sensor), camera, T_base_sensor, 2);
-    add_contour_residuals(view, contour, camera, T_base_sensor, settings, of_view, tally);
+        find_contour(view, measured(view.cell, camera, T_base_sensor), camera, T_base_sensor, {});
+    std::vector<Sample> samples;
+    observe_contour(view, contour, camera, T_base_sensor, settings, samples, tally);
+    for (const Sample& sample : samples) of_view.add(sample.observation, sample.cluster);
     sums.merge(of_view);
   }
   return sums;

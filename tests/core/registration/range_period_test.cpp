@@ -11,13 +11,13 @@ namespace calibrd {
 namespace {
 
 /// Residuals of a sensor that wiggles: noise of 1.5 mm on pixels between 0.9 and 1.9 m.
-std::vector<RangeSample> wiggling(double amplitude_m, double period_m) {
+std::vector<Sample> wiggling(double amplitude_m, double period_m) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> depth(0.9, 1.9);
-  std::vector<RangeSample> samples;
+  std::vector<Sample> samples;
   for (int i = 0; i < 20000; ++i) {
-    RangeSample sample;
+    Sample sample;
     sample.depth_m = depth(random);
     sample.observation.jacobian.setZero();
     for (int k = 0; k < 6; ++k) sample.observation.jacobian[k] = normal(random);
