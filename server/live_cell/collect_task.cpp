@@ -88,7 +88,7 @@ std::string dropped_postures(const CollectTask& task) {
   const int dropped = task.dropped();
   if (dropped == 0) return {};
   return "; " + std::to_string(dropped) +
-         " more were dropped when the sensor was lost, because it may have been moved";
+         " more dropped when the sensor was lost, because it may have been moved";
 }
 
 }  // namespace calibrd

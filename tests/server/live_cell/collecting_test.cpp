@@ -65,10 +65,10 @@ TEST_F(Collecting, NeverMixesViewsOfBeforeAndAfterALossOfTheSensor) {
   wait_for_drop(id);
   expect_frames_do_not_count(id);
   const double loss_s = now_s();
-  EXPECT_THAT(job(id).message, HasSubstr("0 of 3 postures; 2 more were dropped when the sensor was lost"));
+  EXPECT_THAT(job(id).message, HasSubstr("0 of 3 postures; 2 more dropped when the sensor was lost"));
   ASSERT_EQ(log().size(), 1U);
   EXPECT_EQ(log()[0].status, JobStatus::collecting);
-  EXPECT_THAT(log()[0].message, HasSubstr("2 more were dropped"));
+  EXPECT_THAT(log()[0].message, HasSubstr("2 more dropped"));
   set_health(SensorHealth::State::streaming);
   let_it_end(id);
   EXPECT_EQ(job(id).status, JobStatus::succeeded);
@@ -97,7 +97,7 @@ TEST_F(Collecting, EndsAtItsTimeLimitAndTellsOfTheLoss) {
   wait_for([&] { return job(id).finished.has_value(); });
   EXPECT_EQ(job(id).status, JobStatus::failed);
   EXPECT_THAT(job(id).message, HasSubstr("Only 0 of 3 postures"));
-  EXPECT_THAT(job(id).message, HasSubstr("1 more were dropped"));
+  EXPECT_THAT(job(id).message, HasSubstr("1 more dropped"));
 }
 
 TEST_F(Collecting, SaysThatTheSensorIsLostAndNotWhatItsLastFrameShowed) {
