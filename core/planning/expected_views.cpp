@@ -13,6 +13,7 @@
 namespace calibrd {
 namespace {
 
+constexpr double kUsualPeriod_m = 0.6;  // of the range's periodic term, 16 to 120 MHz modulation
 constexpr int kCoarseWidth = 128;
 /// Neighbouring pixels err alike: so many of them say what one would.
 constexpr double kCorrelation = 10;
@@ -45,7 +46,7 @@ ParameterMatrix prior_information() {
   sigmas[kOffset] = priors.offset_prior_m;
   sigmas[kScale] = priors.scale_prior;
   sigmas[kSine] = sigmas[kCosine] = priors.periodic_prior_m;
-  sigmas[kPeriod] = priors.period_prior_m;
+  sigmas[kPeriod] = priors.period_prior * kUsualPeriod_m;
   sigmas[kImageShift] = priors.image_shift_prior_px;
   sigmas[kDepthShift] = priors.depth_shift_prior_px;
   sigmas.tail<kMaxJointZeros>().setConstant(priors.joint_zero_prior);

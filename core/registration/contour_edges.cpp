@@ -140,7 +140,7 @@ void observe_contour(const RegistrationView& view, std::span<const ContourPoint>
     const auto edge = find_edge(view, camera, T_base_sensor, point, settings);
     if (!edge) continue;
     const Observation o = observe(view, point, *edge, camera, T_base_sensor, settings);
-    samples.push_back({o, point.cluster, 0});
+    samples.push_back({o, point.cluster});
     if (o.robust_weight <= 0) continue;
     ++tally.found;
     tally.residuals_px.push_back(static_cast<float>(o.residual));

@@ -47,7 +47,8 @@ inline double tukey_weight(double residual, double kernel) {
 struct Sample {
   Observation observation;
   std::size_t cluster = 0;
-  double depth_m = 0;  ///< where a range was measured, for choosing the period of its periodic term
+  /// Of a range: where it was measured, and how much farther the surface lies one pixel on (m per pixel).
+  double depth_m = 0, depth_per_pixel_m = 0;
 };
 
 /// Images are worked on in bands of so many rows, which no cluster straddles.

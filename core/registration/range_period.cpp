@@ -19,6 +19,10 @@ constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.
 /// The cost has a wide minimum over periods: so many samples find it as well as all of them.
 constexpr std::size_t kEnoughSamples = 6000;
 
+/// Noise lets the cost fall by about as much through an amplitude and a phase: 2 for one period, more for the
+/// best of several.
+constexpr double kFallByChance = 3;
+
 /// What is known without a periodic term: each candidate adds but its two rows.
 struct Known {
   ParameterMatrix information;
@@ -88,8 +92,13 @@ std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double 
     fits[i] = fit_with(samples, sample_weight, stride, without, kCandidates_m[i]);
   });
   const auto best = std::ranges::max_element(fits, {}, &Fit::gain);
-  if (best->gain <= solved(without).gain) return std::nullopt;
-  return PeriodicTerm{kCandidates_m[best - fits.begin()], best->solution[kSine], best->solution[kCosine]};
+  // Of noise alone some candidate makes the cost fall, too: what is left of the amplitude without that is how
+  // large it may be thought to be (James & Stein 1961).
+  const double left = 1 - kFallByChance / (best->gain - solved(without).gain);
+  if (!(left > 0)) return std::nullopt;
+  const Eigen::Vector2d amplitude = best->solution.segment<2>(kSine);
+  return PeriodicTerm{kCandidates_m[best - fits.begin()], amplitude[0], amplitude[1],
+                      amplitude.norm() * std::sqrt(0.5 * left)};
 }
 
 }  // namespace calibrd

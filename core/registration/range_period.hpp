@@ -14,6 +14,7 @@ namespace calibrd {
 /// when no candidate explains more than no periodic term at all.
 struct PeriodicTerm {
   double period_m, sin_m, cos_m;
+  double prior_m;  ///< standard deviation of either amplitude before they were seen, as the samples have it
 };
 std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double sample_weight,
                                         const ParameterMatrix& rest_information,

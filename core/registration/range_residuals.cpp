@@ -106,7 +106,8 @@ void observe_range(const RegistrationView& view, const VirtualMeasurement& predi
       Observation& o = sample.observation;
       o.residual = residual;
       o.robust_weight = tukey_weight(residual, settings.kernel_m);
-      o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, pixel_size);
+      o.sigma = settings.sigma_factor * depth_sigma_m(z, cos_incidence, pixel_size, settings.lateral_px);
+      sample.depth_per_pixel_m = depth_per_pixel_m(z, cos_incidence, pixel_size);
       o.jacobian = jacobian_of(view, prediction.link[i], T_base_sensor, correction, z * d, n);
       if (o.robust_weight <= 0) continue;
       ++tally.agreeing;

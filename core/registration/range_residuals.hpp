@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "core/registration/depth_noise.hpp"
 #include "core/registration/normal_equations.hpp"
 #include "core/registration/registration_view.hpp"
 #include "core/sensing/depth_correction.hpp"
@@ -8,8 +9,9 @@
 namespace calibrd {
 
 struct RangeSettings {
-  double kernel_m = 0.03;           ///< residuals beyond this have no weight (Tukey's biweight)
-  double sigma_factor = 1;          ///< this sensor's noise over depth_sigma_m()
+  double kernel_m = 0.03;                ///< residuals beyond this have no weight (Tukey's biweight)
+  double sigma_factor = 1;               ///< this sensor's noise over depth_sigma_m()
+  double lateral_px = kUsualLateral_px;  ///< its lateral noise, see depth_sigma_m()
   double min_cos_incidence = 0.25;  ///< flatter surfaces say more about the pixel grid than about the pose
   int stride = 1;                   ///< every stride-th pixel of the prediction in both directions
   int prediction_step = 1;          ///< the prediction is that of camera.subsampled(prediction_step)

@@ -4,14 +4,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/registration/covariance.hpp"
-#include "core/registration/linearization.hpp"
 #include "core/registration/range_period.hpp"
 #include "core/registration/repeated_postures.hpp"
 #include "core/registration/reported_joints.hpp"
+#include "core/registration/sensor_noise.hpp"
 
 namespace calibrd {
 namespace {
@@ -33,21 +32,13 @@ constexpr int kStepsPerRendering = 3;
 constexpr double kSettled = 0.1;  // sigmas: a step so small is the last on one rendering
 constexpr int kContourStride = 2;
 constexpr int kFullMoves = 3;
-/// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
-/// errors.
-constexpr double kMinEdgeScatter = 0.5;
 /// Chance lets the cost fall by as much through seven joint zeros once in twenty times. Zeros of a robot that
 /// has none would only carry noise into the pose.
 constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
-/// simulated captures this much larger, squared, than the scatter of residuals alone says.
-constexpr double kModelAllowance = 1.55;
-
-/// What the scatter of one kind of edges showed so far.
-struct EdgeNoise {
-  double sigma_px = 0.5;
-  double correlation = 1;  // times that errors are less independent than their number says
-};
+/// simulated captures this much larger, squared, than the scatter of residuals alone says. Part of it is
+/// common to all pixels of a view and averages over views only.
+constexpr double kModelAllowance = 1.25, kModelAllowanceOfOneView = 0.3;
 
 class Refiner {
  public:
@@ -106,7 +97,7 @@ class Refiner {
     const bool used = source == EdgeSource::image || settings_.use_depth_outline;
     contour.search_px = contour.kernel_px = used ? stage.contour_search_px : 0;
     // Once profiles are fitted, what lies several sigmas away is another edge.
-    const double sigma_px = edge_noise_[static_cast<std::size_t>(source)].sigma_px;
+    const double sigma_px = noise_.edges[static_cast<std::size_t>(source)].sigma_px;
     if (stage.fit_profile)
       contour.kernel_px = std::clamp(kKernelSigmas * sigma_px, 0.7, stage.contour_search_px);
     contour.fit_profile = stage.fit_profile;
@@ -117,47 +108,20 @@ class Refiner {
   RangeSettings range_settings(const Stage& stage) const {
     RangeSettings range;
     range.kept_kernels = 1.5;
-    range.sigma_factor = result_.sigma_factor;
-    const double noise_m = result_.sigma_factor * 1.6e-3;
+    range.sigma_factor = noise_.sigma_factor;
+    range.lateral_px = noise_.lateral_px;
+    const double noise_m = noise_.sigma_factor * 1.6e-3;
     range.kernel_m = stage.range_kernel_m > 0 ? stage.range_kernel_m
                                               : std::clamp(kKernelSigmas * noise_m, kMinKernel_m, 0.04);
     return range;
   }
 
-  /// Takes from the scatter what it says of the noise.
-  void note_noise(const ViewSums& sums) {
-    result_.range_correlation = sums.range.correlation_factor();
-    for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
-      edge_noise_[k].correlation = sums.contour[k].equations.correlation_factor();
-    noise_found_ = std::clamp(result_.sigma_factor * robust_sigma(sums.range_tally.whitened), 0.3, 20.0);
-  }
-
-  void note_edges(const ViewSums& sums) {
-    for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
-      const auto& residuals_px = sums.contour[k].tally.residuals_px;
-      if (!residuals_px.empty()) edge_noise_[k].sigma_px = robust_sigma(residuals_px);
-    }
-  }
-
-  /// Range and contour, each by what its own scatter says it is worth.
-  NormalEquations weighed(const ViewSums& sums) const {
-    NormalEquations all = sums.range.scaled(range_weight(sums));
-    all.merge(contour_part(sums));
-    return all;
-  }
-
-  double range_weight(const ViewSums& sums) const {
+  NormalEquations range_at_its_best(const Stage& stage, const ViewSums& sums) const {
     const double scale = robust_sigma(sums.range_tally.whitened);
-    return 1 / (scale * scale * result_.range_correlation);
-  }
-
-  NormalEquations contour_part(const ViewSums& sums) const {
-    NormalEquations all;
-    for (std::size_t k = 0; k < kEdgeSources.size(); ++k) {
-      const double scale = std::max(robust_sigma(sums.contour[k].tally.whitened), kMinEdgeScatter);
-      all.merge(sums.contour[k].equations.scaled(1 / (scale * scale * edge_noise_[k].correlation)));
-    }
-    return all;
+    ParameterVector gradient;
+    const ParameterMatrix information =
+        with_priors(sums.range.scaled(1 / (scale * scale)), stage, ParameterVector::Zero(), gradient);
+    return latest_.sums(information.ldlt().solve(gradient)).range;
   }
 
   /// Everything known before the views were seen, as one observation per parameter. `delta`: how far the
@@ -173,9 +137,10 @@ class Refiner {
     const bool periodic = c.periodic_period_m > 0;
     add(kOffset, c.offset_m, stage.free_bias ? settings_.offset_prior_m : kHeld);
     add(kScale, c.scale - 1, stage.free_bias ? settings_.scale_prior : kHeld);
-    add(kSine, c.periodic_sin_m, settings_.periodic_prior_m);
-    add(kCosine, c.periodic_cos_m, settings_.periodic_prior_m);
-    add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0, settings_.period_prior_m);
+    add(kSine, c.periodic_sin_m, periodic_prior_m_);
+    add(kCosine, c.periodic_cos_m, periodic_prior_m_);
+    add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0,
+        periodic ? settings_.period_prior * period_start_m_ : 1);
     add(kImageShift, result_.image_shift_px, settings_.image_shift_prior_px);
     add(kDepthShift, result_.depth_shift_px, settings_.depth_shift_prior_px);
     const double zero_sigma = stage.free_zeros ? settings_.joint_zero_prior : kHeld;
@@ -196,14 +161,16 @@ class Refiner {
   /// From what the last rendering showed, before its move.
   void choose_period(const Stage& stage) {
     const ViewSums sums = latest_.sums(ParameterVector::Zero());
-    const NormalEquations edges = contour_part(sums);
+    const NormalEquations edges = noise_.weighed_edges(sums);
     ParameterMatrix information = edges.information();
     ParameterVector gradient = edges.gradient();
     add_priors(stage, -latest_delta_, information, gradient);
-    if (const auto term = find_period(latest_.range_samples(), range_weight(sums), information, gradient)) {
+    if (const auto term =
+            find_period(latest_.range_samples(), noise_.range_weight(sums), information, gradient)) {
       result_.correction.periodic_period_m = period_start_m_ = term->period_m;
       result_.correction.periodic_sin_m = term->sin_m;
       result_.correction.periodic_cos_m = term->cos_m;
+      periodic_prior_m_ = std::min(term->prior_m, settings_.periodic_prior_m);
     }
   }
 
@@ -211,11 +178,13 @@ class Refiner {
   void move(const Stage& stage, int rendering) {
     linearize(stage);
     ParameterVector delta = ParameterVector::Zero();
+    SensorNoise found = noise_;  // with which the next rendering is looked at
     for (int step = 0; step < kStepsPerRendering; ++step) {
       const ViewSums sums = latest_.sums(delta);
-      if (step == 0 && stage.range_kernel_m == 0) note_noise(sums);
-      if (step == 0) note_edges(sums);
-      const NormalEquations all = weighed(sums);
+      if (step == 0 && stage.range_kernel_m == 0)
+        found = noise_.found_in(latest_, sums, range_at_its_best(stage, sums));
+      if (step == 0) found.note_edges(sums);
+      const NormalEquations all = found.weighed(sums);
       if (all.count() < 50) return;
       ParameterVector gradient;
       last_information_ = with_priors(all, stage, delta, gradient);
@@ -223,7 +192,7 @@ class Refiner {
       delta += full_step;
       if (full_step.dot(gradient) < kSettled * kSettled) break;
     }
-    if (stage.range_kernel_m == 0) result_.sigma_factor = noise_found_;
+    noise_ = found;
     note_move(delta.head<6>());
     // Image edges and pixels change sides between renderings; halved moves settle that jitter.
     latest_delta_ = (rendering < kFullMoves ? 1.0 : 0.5) * delta;
@@ -267,7 +236,9 @@ class Refiner {
 
   void finish(const Stage& stage) {
     ViewSums sums = latest_.sums(latest_delta_);
-    const NormalEquations all = weighed(sums);
+    const NormalEquations all = noise_.weighed(sums);
+    result_.sigma_factor = noise_.sigma_factor;
+    result_.range_correlation = noise_.range_correlation;
     ParameterVector gradient;
     const ParameterMatrix information = with_priors(all, stage, ParameterVector::Zero(), gradient);
     publish_for_reported_joints(parameter_covariance(information, all));
@@ -283,8 +254,9 @@ class Refiner {
     published.leftCols<6>().setIdentity();
     published.rightCols<kMaxJointZeros>() =
         reported_joints_map(views_, predictions_, camera_, result_.T_base_sensor);
+    const double allowance = kModelAllowance + kModelAllowanceOfOneView / static_cast<double>(views_.size());
     result_.covariance =
-        kModelAllowance * views_per_posture(views_) * published * covariance * published.transpose();
+        allowance * views_per_posture(views_) * published * covariance * published.transpose();
     result_.joint_zero_sigmas = covariance.diagonal().tail<kMaxJointZeros>().cwiseSqrt();
     result_.T_base_sensor =
         perturbed(result_.T_base_sensor, published.rightCols<kMaxJointZeros>() * result_.joint_zeros);
@@ -299,10 +271,9 @@ class Refiner {
   ParameterVector latest_delta_ = ParameterVector::Zero();  // moved since
   std::vector<Vector6d> moves_;                             // of the stage
   ParameterMatrix last_information_ = ParameterMatrix::Zero();
-  double period_start_m_ = 0;
-  std::array<EdgeNoise, 2> edge_noise_;  // by EdgeSource
-  double noise_found_ = 1;               // sigma_factor as the last scatter has it
-  double last_move_ = 0;                 // of the pose, in its own standard deviations
+  double period_start_m_ = 0, periodic_prior_m_ = settings_.periodic_prior_m;
+  SensorNoise noise_;
+  double last_move_ = 0;  // of the pose, in its own standard deviations
 };
 
 }  // namespace

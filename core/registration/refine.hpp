@@ -15,7 +15,7 @@ struct RefineSettings {
   double offset_prior_m = 0.02;     ///< standard deviation of the range offset before anything was seen
   double scale_prior = 0.005;       ///< and of the range scale
   double periodic_prior_m = 0.004;  ///< and of the periodic term's amplitude
-  double period_prior_m = 0.08;     ///< and of its period about the best candidate
+  double period_prior = 0.07;       ///< and of its period about the best candidate, as a share of it
   double image_shift_prior_px = 0.3;
   double depth_shift_prior_px = 2;  ///< stereo fattens what stands in front, time of flight frays it
   double joint_zero_prior = 1e-3;   ///< standard deviation of a joint's zero, rad or m; 0: trust the zeros
