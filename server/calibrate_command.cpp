@@ -15,6 +15,7 @@
 #include "core/paper/paper_error.hpp"
 #include "core/paper/region.hpp"
 #include "core/planning/next_posture.hpp"
+#include "core/planning/table_height.hpp"
 
 namespace calibrd {
 namespace {
@@ -59,6 +60,10 @@ std::string check_point(const std::string& text) {
   return parse_point(text, 0) ? "" : "\"" + text + "\" is not x,y,z or NAME=x,y,z (m, base frame)";
 }
 
+std::string check_table_height(const std::string& text) {
+  return parse_table_height(text) ? "" : not_a_table_height(text);
+}
+
 Result<Loaded> load(const CalibrateOptions& options) {
   CalibrationSettings settings;
   settings.method = options.method == "paper" ? Method::paper : Method::full;
@@ -73,7 +78,8 @@ Result<Loaded> load(const CalibrateOptions& options) {
   }
   for (const std::string& text : options.workspace)
     if (const auto point = parse_point(text, settings.workspace.size())) settings.workspace.push_back(*point);
-  auto capture = read_capture(options.capture_dir, options.models);
+  const auto images = options.depth_only ? CaptureImages::ignore : CaptureImages::read;
+  auto capture = read_capture(options.capture_dir, options.models, images);
   if (!capture) return capture.error();
   RobotModelOptions model_options{{options.capture_dir}, capture->base_link};
   model_options.search_paths.insert(model_options.search_paths.end(), options.models.begin(),
@@ -128,7 +134,8 @@ void add_calibrate_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--table-height", options.table_height_m,
                   "What --suggest suggests stays above this height in the base frame, m; default: 0")
-      ->needs(suggest);
+      ->needs(suggest)
+      ->check(check_table_height);
   command.add_flag("--json", options.json, "Print JSON (always the case)");
 }
 

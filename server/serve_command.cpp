@@ -11,6 +11,7 @@
 #include <future>
 #include <iostream>
 
+#include "server/config/config_warnings.hpp"
 #include "server/config/load_config.hpp"
 #include "server/config/print_config.hpp"
 #include "server/daemon/daemon.hpp"
@@ -40,6 +41,7 @@ int refuse(const Error& error) {
 
 int only_check(const Config& config) {
   if (const auto checked = check_config(config); !checked) return refuse(checked.error());
+  for (const auto& warning : config_warnings(config)) std::cerr << "calibrd: warning: " << warning << '\n';
   std::cout << "the configuration is good\n";
   return 0;
 }

@@ -30,6 +30,12 @@ Result<Method> read_method(const json::object& body) {
   return fail(ApiError::bad_value, "method: \"" + **text + "\" is neither \"full\" nor \"paper\"");
 }
 
+/// "guess": null asks for a search from nothing; without the key the cell chooses the start.
+bool asks_for_no_guess(const json::object& body) {
+  const auto* guess = body.if_contains("guess");
+  return guess && guess->is_null();
+}
+
 /// A guess as a list of numbers, or as an object that holds it as T_base_sensor.
 Result<std::optional<Pose>> read_guess(const json::object& body) {
   const auto* guess = body.if_contains("guess");
@@ -64,7 +70,8 @@ Result<CalibrationRequest> read_calibration_request(const Request& request, cons
   if (!activate) return activate.error();
   const auto key = read_idempotency_key(request);
   if (!key) return key.error();
-  return CalibrationRequest{sensor_id, *method, *guess, *postures, *activate, *key, json::serialize(*body)};
+  return CalibrationRequest{sensor_id, *method,   *guess, asks_for_no_guess(*body),
+                            *postures, *activate, *key,   json::serialize(*body)};
 }
 
 Response answer_start(const Request& request, const PathValues& values, CellService& service) {

@@ -1,27 +1,18 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
-#include <cmath>
-
 #include "api/json/next_posture_json.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
+#include "core/planning/table_height.hpp"
 
 namespace calibrd::api {
 namespace {
 
-constexpr double kHighestTable_m = 10;
-
 Result<double> read_table_height(const Request& request) {
   const auto asked = request.query.find("table_height_m");
   if (asked == request.query.end()) return 0.0;
-  const auto& text = asked->second;
-  const auto* end = text.data() + text.size();
-  double height_m = 0;
-  const auto [rest, failure] = std::from_chars(text.data(), end, height_m);
-  if (failure != std::errc() || rest != end || !(std::abs(height_m) <= kHighestTable_m))
-    return fail(ApiError::bad_query, "table_height_m: \"" + text + "\" is not a height within 10 m");
-  return height_m;
+  if (const auto height_m = parse_table_height(asked->second)) return *height_m;
+  return fail(ApiError::bad_query, "table_height_m: " + not_a_table_height(asked->second));
 }
 
 Response answer_next_posture(const Request& request, const PathValues& values, CellService& service) {

@@ -117,7 +117,8 @@ enum class JobStatus { queued, collecting, running, succeeded, failed, cancelled
 struct CalibrationRequest {
   std::string sensor_id;
   Method method = Method::full;
-  std::optional<Pose> guess_T_base_sensor;
+  std::optional<Pose> guess_T_base_sensor;  ///< nothing: as from_nothing says
+  bool from_nothing = false;    ///< without a guess: true: start from none; false: from what the cell knows
   std::optional<int> postures;  ///< nothing: as configured
   bool activate = true;
   std::string idempotency_key;  ///< empty: none

@@ -23,10 +23,14 @@ struct Capture {
   std::vector<View> views;
 };
 
-/// Reads CAPTURE_DIR/capture.json and its images. `models`: folders to look the URDF and its meshes up in,
-/// after the capture itself. Errors: CaptureError, each naming the file or key at fault.
+enum class CaptureImages { read, ignore };
+
+/// Reads CAPTURE_DIR/capture.json, its depth images, and the others unless they are to be ignored. `models`:
+/// folders to look the URDF and its meshes up in, after the capture itself. Errors: CaptureError, each naming
+/// the file or key at fault.
 Result<Capture> read_capture(const std::filesystem::path& capture_dir,
-                             std::span<const std::filesystem::path> models);
+                             std::span<const std::filesystem::path> models,
+                             CaptureImages images = CaptureImages::read);
 
 /// Writes a capture into `capture_dir` (created; must be empty or absent). `urdf_reference` is stored as
 /// robot.urdf. Either the whole recording stands there afterwards, or an error says why not.

@@ -124,7 +124,7 @@ Result<PngImage> read_image(const JsonNode& frame, std::string_view key, const f
 }
 
 Result<View> read_view(const JsonNode& frame, const fs::path& capture_dir, const Capture& capture,
-                       double depth_scale_m) {
+                       double depth_scale_m, CaptureImages images) {
   View view;
   PngImage depth;
   CALIBRD_TAKE(depth, read_image(frame, "depth", capture_dir, capture.camera));
@@ -132,7 +132,7 @@ Result<View> read_view(const JsonNode& frame, const fs::path& capture_dir, const
     return fail(CaptureError::wrong_bit_depth, frame.name("depth") + " (" + std::to_string(depth.bit_depth) +
                                                    " bits, " + (depth.channels == 1 ? "grey)" : "colour)"));
   view.depth = {depth.width, depth.height, depth_scale_m, std::move(depth.pixels)};
-  if (frame.has("image")) {
+  if (images == CaptureImages::read && frame.has("image")) {
     PngImage image;
     CALIBRD_TAKE(image, read_image(frame, "image", capture_dir, capture.camera));
     view.image = GreyImage{image.width, image.height, std::move(image.pixels)};
@@ -144,12 +144,13 @@ Result<View> read_view(const JsonNode& frame, const fs::path& capture_dir, const
   return view;
 }
 
-Status read_views(const JsonNode& root, const fs::path& capture_dir, double depth_scale_m, Capture& capture) {
+Status read_views(const JsonNode& root, const fs::path& capture_dir, double depth_scale_m,
+                  CaptureImages images, Capture& capture) {
   const auto frames = root.objects("frames");
   if (!frames) return frames.error();
   CALIBRD_CHECK(check_frame_count(frames->size(), capture.camera));
   for (const JsonNode& frame : *frames) {
-    auto view = read_view(frame, capture_dir, capture, depth_scale_m);
+    auto view = read_view(frame, capture_dir, capture, depth_scale_m, images);
     if (!view) return view.error();
     capture.views.push_back(std::move(view).value());
   }
@@ -158,7 +159,8 @@ Status read_views(const JsonNode& root, const fs::path& capture_dir, double dept
 
 }  // namespace
 
-Result<Capture> read_capture(const fs::path& capture_dir, std::span<const fs::path> models) {
+Result<Capture> read_capture(const fs::path& capture_dir, std::span<const fs::path> models,
+                             CaptureImages images) {
   const auto document = read_document(capture_dir);
   if (!document) return document.error();
   const JsonNode root(document->get_object(), "");
@@ -177,7 +179,7 @@ Result<Capture> read_capture(const fs::path& capture_dir, std::span<const fs::pa
   double depth_scale_m = 0;
   CALIBRD_TAKE(depth_scale_m, sensor->number("depth_scale_m"));
   CALIBRD_CHECK(check_depth_scale(depth_scale_m));
-  CALIBRD_CHECK(read_views(root, capture_dir, depth_scale_m, capture));
+  CALIBRD_CHECK(read_views(root, capture_dir, depth_scale_m, images, capture));
   return capture;
 }
 

@@ -168,15 +168,19 @@ void declare_sensors(std::vector<Setting>& table) {
       "Height of the depth image; set on the device.");
   key("fps", &SensorConfig::fps, integer(1, 120), "1/s", "Frame rate set on the device.");
   key("fx", camera(&CameraModel::fx), positive_real(), "px",
-      "Focal length. What the device reports is not used: drivers report wrong fields of view.")
+      "Focal length. What the device reports is not used: drivers report wrong fields of view. Wrong "
+      "intrinsics cannot be seen from the views alone: 2.6 % off here moved the pose by 39 mm, at a claimed "
+      "sigma of 0.8 mm.")
       .required = true;
   key("fy", camera(&CameraModel::fy), positive_real(), "px", "Focal length.").required = true;
   key("cx", camera(&CameraModel::cx), positive_real(), "px",
-      "Principal point; the centre of the first pixel is 0.")
+      "Principal point; the centre of the first pixel is 0. Taken as the centre of the image it moved the "
+      "pose "
+      "by up to 29 mm, unseen.")
       .required = true;
   key("cy", camera(&CameraModel::cy), positive_real(), "px", "Principal point.").required = true;
   key("distortion", camera(&CameraModel::distortion), five_reals(), "",
-      "k1, k2, p1, p2, k3 as OpenCV defines them.");
+      "k1, k2, p1, p2, k3 as OpenCV defines them. Left out it moved the pose by 5 mm, unseen.");
   key("depth_unit_um", &SensorConfig::depth_unit_um, one_of_numbers({1000, 100}), "µm",
       "Unit of the depth values to ask the device for; the other one is taken where it is not offered.");
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",

@@ -93,7 +93,7 @@ SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig&
 }
 
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
-  SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}};
+  SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}, sensor.mirror};
   for (const auto& [name, p] : sensor.workspace) setup.workspace.push_back({name, {p[0], p[1], p[2]}});
   return setup;
 }

@@ -22,11 +22,15 @@ std::string printable(std::string text) {
 void log_calibration(const api::CalibrationReport& calibration) {
   const auto verdict =
       calibration.result ? std::string(", ") + api::name_of(calibration.result->verdict) : "";
-  const auto level = calibration.status == api::JobStatus::failed ? spdlog::level::warn : spdlog::level::info;
+  const bool is_well =
+      calibration.status == api::JobStatus::succeeded || calibration.status == api::JobStatus::cancelled;
+  const auto level = is_well ? spdlog::level::info : spdlog::level::warn;
   const auto message = calibration.message.empty() ? "" : ". " + calibration.message;
   spdlog::log(level, "sensor {}: calibration {} {}{}{}", calibration.sensor_id, calibration.id,
               api::name_of(calibration.status), verdict, message);
 }
+
+void log_error(const std::string& message) { spdlog::error("{}", message); }
 
 void log_pose(const api::PoseReport& pose) {
   if (pose.valid)

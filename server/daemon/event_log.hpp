@@ -12,7 +12,9 @@
 namespace calibrd {
 
 // What happens in the cell, as lines of the log.
+/// A warning unless it has succeeded or was cancelled.
 void log_calibration(const api::CalibrationReport& calibration);
+void log_error(const std::string& message);
 void log_pose(const api::PoseReport& pose);
 void log_access(const api::AccessRecord& record);
 

@@ -9,6 +9,9 @@
 
 namespace calibrd {
 
+/// Of the progress of a job: collecting takes it here, computing from here to 1.
+inline constexpr double kCollectingShare = 0.5;
+
 /// One calibration under way. Report and flags are guarded by the mutex of CalibrationJobs.
 struct CalibrationJobs::Job {
   api::CalibrationReport report;

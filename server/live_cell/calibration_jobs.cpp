@@ -21,6 +21,12 @@ namespace {
 /// Without a guess the sensor is found from what moves between two postures.
 constexpr int kPosturesFromNothing = 2;
 
+/// `guess`: what the cell would start from.
+std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::optional<Pose>& guess) {
+  if (request.guess_T_base_sensor || request.from_nothing) return request.guess_T_base_sensor;
+  return guess;
+}
+
 }  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
@@ -55,7 +61,8 @@ Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& 
   if (*before) return **before;
   if (const auto busy = active(sensor.id()); !busy.empty())
     return fail(ApiError::calibration_in_progress, busy);
-  const auto start_pose = request.guess_T_base_sensor ? request.guess_T_base_sensor : guess;
+  const auto start_pose = start_of(request, guess);
+  if (!start_pose && request.method == Method::paper) return fail(ApiError::paper_needs_guess, sensor.id());
   if (!start_pose && request.postures && *request.postures < kPosturesFromNothing)
     return fail(ApiError::guess_needed, sensor.id());
   const auto job = make_job(request, sensor, start_pose);
@@ -100,10 +107,13 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
-  job->task = std::make_shared<CollectTask>(collector, [this] {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  });
+  job->task = std::make_shared<CollectTask>(
+      collector,
+      [this] {
+        const std::lock_guard lock(mutex_);
+        changed_.notify_all();
+      },
+      [this, id = job->report.id] { tell_of_drop(id); });
   return job;
 }
 
@@ -156,20 +166,29 @@ std::string CalibrationJobs::active(const std::string& sensor_id) const {
   return {};
 }
 
+void CalibrationJobs::tell_of_drop(const std::string& id) const {
+  std::optional<CalibrationReport> report;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto job = jobs_.find(id); job != jobs_.end()) report = report_of(*job->second);
+  }
+  if (report) log_(*report);
+}
+
 /// What the job is doing; the caller holds mutex_.
 CalibrationReport CalibrationJobs::report_of(const Job& job) const {
   auto report = job.report;
   report.postures_seen = job.task->seen();
   if (report.status != JobStatus::collecting) return report;
-  const double share = static_cast<double>(report.postures_seen) / report.postures_wanted;
-  report.progress = 0.5 * share;
+  report.progress = kCollectingShare * job.task->most_seen() / report.postures_wanted;
   report.message =
       std::to_string(report.postures_seen) + " of " + std::to_string(report.postures_wanted) + " postures";
-  const auto views = job.sensor->report().views;
+  report.message += dropped_postures(*job.task);
+  const auto hindrance = job.sensor->hindrance();
   if (job.task->is_complete())
     report.message += "; waiting for another calibration to be computed";
-  else if (!views.usable)
-    report.message += "; " + views.reason;
+  else if (!hindrance.empty())
+    report.message += "; " + hindrance;
   else if (job.task->is_waiting_for_motion())
     report.message += "; move the robot to another posture and let it hold still";
   return report;

@@ -37,13 +37,14 @@ class CalibrationJobs {
       std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at)>;
   using Log = std::function<void(const api::CalibrationReport&)>;
 
-  /// `store` must outlive it. `log` hears of every calibration that has ended.
+  /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
+  /// collecting when it has lost postures.
   CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish, Log log,
                   JobSettings settings);
   ~CalibrationJobs();
 
-  /// `sensor` must outlive the jobs. `guess`: where the request holds none; without either, at least two
-  /// postures are collected, and a request for one is refused.
+  /// `sensor` must outlive the jobs. `guess`: where the request leaves the start to the cell. Without any, at
+  /// least two postures are collected, and a request for one, or for the paper's method, is refused.
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request, LiveSensor& sensor,
                                        const std::optional<Pose>& guess);
   Result<api::CalibrationReport> find(const std::string& id) const;
@@ -66,6 +67,7 @@ class CalibrationJobs {
   void run();
   JobPointer next_ready();
   std::vector<JobPointer> take_overdue(Clock::time_point now);
+  static void begin_computing(Job& job);
   void compute(const JobPointer& job);
   CalibrationResult calibrate(const JobPointer& job, std::span<const View> views);
   void end(const JobPointer& job, api::JobStatus status, std::string message,
@@ -74,6 +76,7 @@ class CalibrationJobs {
   void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
   bool store_end(api::CalibrationReport& report, const std::string& basis);
   api::CalibrationReport report_of(const Job& job) const;
+  void tell_of_drop(const std::string& id) const;
 
   CalibrationStore& store_;
   const CalibrateFunction calibrate_;

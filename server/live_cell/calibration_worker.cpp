@@ -45,7 +45,7 @@ void CalibrationJobs::run() {
   while (!is_stopping_) {
     const auto overdue = take_overdue(Clock::now());
     const auto ready = next_ready();
-    if (ready) ready->report.status = JobStatus::running;
+    if (ready) begin_computing(*ready);
     if (overdue.empty() && !ready) {
       auto wake = Clock::now() + kLongWait;
       for (const auto& [id, job] : jobs_)
@@ -58,6 +58,12 @@ void CalibrationJobs::run() {
     if (ready) compute(ready);
     lock.lock();
   }
+}
+
+/// The caller holds mutex_.
+void CalibrationJobs::begin_computing(Job& job) {
+  job.report.status = JobStatus::running;
+  job.report.progress = kCollectingShare;
 }
 
 /// The oldest job that has its postures; the caller holds mutex_.
@@ -83,10 +89,10 @@ std::vector<CalibrationJobs::JobPointer> CalibrationJobs::take_overdue(Clock::ti
 void CalibrationJobs::end_overdue(const JobPointer& job) {
   job->task->cancel();
   const auto seen = std::to_string(job->task->seen()), wanted = std::to_string(job->report.postures_wanted);
-  auto message = "Only " + seen + " of " + wanted +
-                 " postures within calibration.collect_timeout. Move the robot, or ask for fewer postures.";
-  if (const auto views = job->sensor->report().views; !views.usable)
-    message += " Last: " + views.reason + ".";
+  auto message = "Only " + seen + " of " + wanted + " postures within calibration.collect_timeout" +
+                 dropped_postures(*job->task) + ". Move the robot, or ask for fewer postures.";
+  if (const auto hindrance = job->sensor->hindrance(); !hindrance.empty())
+    message += " Last: " + hindrance + ".";
   end(job, JobStatus::failed, std::move(message), std::nullopt, std::nullopt);
 }
 
@@ -115,7 +121,8 @@ CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<co
   settings.cancelled = &job->cancelled;
   settings.on_progress = [&](double share) {
     const std::lock_guard lock(mutex_);
-    job->report.progress = 0.5 + 0.5 * std::clamp(share, 0.0, 1.0);
+    const double progress = kCollectingShare + (1 - kCollectingShare) * std::clamp(share, 0.0, 1.0);
+    job->report.progress = std::max(job->report.progress, progress);  // a computation may begin once more
   };
   try {
     return calibrate_(job->sensor->camera(), views, settings);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/live_cell/collect_task.hpp"
 
+#include <algorithm>
+
 namespace calibrd {
 
 void CollectTask::offer(const View& view) {
@@ -10,6 +12,7 @@ void CollectTask::offer(const View& view) {
     const std::lock_guard lock(mutex_);
     if (is_cancelled_ || collector_.is_complete()) return;
     collector_.offer(view);
+    most_seen_ = std::max(most_seen_, collector_.seen());
     if (!collector_.is_complete()) return;
     tell = std::move(on_complete_);
     ended_.notify_all();
@@ -20,6 +23,18 @@ void CollectTask::offer(const View& view) {
 void CollectTask::interrupt() {
   const std::lock_guard lock(mutex_);
   collector_.interrupt();
+}
+
+void CollectTask::start_over() {
+  int dropped = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_cancelled_ || collector_.is_complete()) return;
+    dropped = collector_.seen();
+    dropped_ += dropped;
+    collector_.start_over();
+  }
+  if (dropped > 0 && on_dropped_) on_dropped_();
 }
 
 void CollectTask::cancel() {
@@ -48,6 +63,16 @@ int CollectTask::seen() const {
   return collector_.seen();
 }
 
+int CollectTask::most_seen() const {
+  const std::lock_guard lock(mutex_);
+  return most_seen_;
+}
+
+int CollectTask::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
 bool CollectTask::wait_until(Clock::time_point deadline) {
   std::unique_lock lock(mutex_);
   ended_.wait_until(lock, deadline, [this] { return is_cancelled_ || collector_.is_complete(); });
@@ -57,6 +82,13 @@ bool CollectTask::wait_until(Clock::time_point deadline) {
 std::vector<View> CollectTask::take_views() {
   const std::lock_guard lock(mutex_);
   return collector_.take_views();
+}
+
+std::string dropped_postures(const CollectTask& task) {
+  const int dropped = task.dropped();
+  if (dropped == 0) return {};
+  return "; " + std::to_string(dropped) +
+         " more dropped when the sensor was lost, because it may have been moved";
 }
 
 }  // namespace calibrd

@@ -38,7 +38,7 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   gate.latency = setup.latency;
   auto entry = std::make_unique<Entry>();
   entry->setup = setup;
-  const auto basis = robot_basis_ + camera_basis(setup.camera);
+  const auto basis = robot_basis_ + camera_basis(setup.camera, setup.mirror);
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
       estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });
@@ -61,10 +61,17 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
 }
 
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
-  // Where this cannot be stored, the pose is drifted all the same, until a restart.
-  if (pose.state == api::PoseState::drifted && pose.known)
-    static_cast<void>(store_.add_drift(pose.known->calibration_id));
+  if (pose.state == api::PoseState::drifted && pose.known) store_drift(pose);
   if (log_.on_pose) log_.on_pose(pose);
+}
+
+/// Where this cannot be stored, the pose is drifted all the same, until a restart.
+void LiveCell::store_drift(const api::PoseReport& pose) {
+  const auto stored = store_.add_drift(pose.known->calibration_id);
+  if (stored || !log_.on_error) return;
+  log_.on_error(
+      "sensor " + pose.sensor_id + ": that the pose of calibration " + pose.known->calibration_id +
+      " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
 }
 
 void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {
@@ -95,10 +102,10 @@ Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
 }
 
 /// The last pose is a better start than the configured guess: sensors are knocked by less than guesses are
-/// wrong. Nothing: the calibration finds the start itself.
+/// wrong. One that is known to be wrong is none. Nothing: the calibration finds the start itself.
 std::optional<Pose> LiveCell::guess_for(const Entry& entry) const {
-  const auto pose = entry.sensor->pose();
-  return pose.known ? pose.known->result.T_base_sensor : entry.setup.guess_T_base_sensor;
+  const auto pose = entry.sensor->plausible_pose();
+  return pose ? pose : entry.setup.guess_T_base_sensor;
 }
 
 api::SensorReport LiveCell::report_of(const Entry& entry) const {
@@ -179,7 +186,11 @@ Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& 
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
   const auto evidence = (*entry)->sensor->evidence();
-  if (!evidence) return fail(ApiError::no_pose, request.sensor_id);
+  if (!evidence) {
+    const auto pose = (*entry)->sensor->pose();
+    return pose.known ? fail(ApiError::calibrate_first, request.sensor_id + ": " + pose.reason)
+                      : fail(ApiError::no_pose, request.sensor_id);
+  }
   PlanningSettings planning;
   planning.min_height_m = request.table_height_m;
   planning.min_change_rad = settings_.jobs.collector.min_distance_rad;
@@ -210,10 +221,10 @@ Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequ
   }
   if (complete) return task->take_views();
   if (is_stopping_) return fail(ApiError::shutting_down);
-  const auto views = entry.sensor->report().views;
-  return fail(ApiError::postures_not_seen, std::to_string(task->seen()) + " of " +
-                                               std::to_string(request.postures) + " postures" +
-                                               (views.usable ? "" : "; last frame: " + views.reason));
+  const auto hindrance = entry.sensor->hindrance();
+  return fail(ApiError::postures_not_seen,
+              std::to_string(task->seen()) + " of " + std::to_string(request.postures) + " postures" +
+                  dropped_postures(*task) + (hindrance.empty() ? "" : "; " + hindrance));
 }
 
 Result<api::CaptureArchive> LiveCell::record_capture(const api::CaptureRequest& request) {

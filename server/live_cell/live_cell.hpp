@@ -37,8 +37,9 @@ struct LiveCellSettings {
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
 struct CellLog {
-  CalibrationJobs::Log on_calibration;                  ///< every one that has ended
+  CalibrationJobs::Log on_calibration;                  ///< see CalibrationJobs
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
+  std::function<void(const std::string&)> on_error;     ///< what went wrong and was asked for by nobody
 };
 
 struct SensorSetup {
@@ -47,6 +48,7 @@ struct SensorSetup {
   Clock::duration latency{0};
   std::optional<Pose> guess_T_base_sensor;
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
+  bool mirror = false;                         ///< its rows are flipped before anybody sees them
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.
@@ -95,6 +97,7 @@ class LiveCell : public api::CellService {
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin);
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
+  void store_drift(const api::PoseReport& pose);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 

@@ -113,18 +113,20 @@ void LiveSensor::finish(FrameDecision decision) {
     newest_ = sighting;
   }
   const bool usable = decision.verdict == FrameVerdict::usable;
-  serve_tasks(sighting->view, usable);
+  serve_tasks(*sighting, usable);
   if (usable) check(*sighting);
 }
 
-void LiveSensor::serve_tasks(const View& view, bool usable) {
-  std::vector<std::shared_ptr<CollectTask>> tasks;
-  {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(tasks_, [](const auto& task) { return !task->is_open(); });
-    tasks = tasks_;
-  }
-  for (const auto& task : tasks) usable ? task->offer(view) : task->interrupt();
+std::vector<std::shared_ptr<CollectTask>> LiveSensor::open_tasks() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(tasks_, [](const auto& task) { return !task->is_open(); });
+  return tasks_;
+}
+
+void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
+  const auto tasks = open_tasks();
+  const bool is_of_use = usable && sighting.stamp > lost_at_;  // which only this thread writes
+  for (const auto& task : tasks) is_of_use ? task->offer(sighting.view) : task->interrupt();
 }
 
 /// A sensor that was away, if only for a restart of its process, may have been moved.
@@ -132,9 +134,12 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
   const bool away = health.state != SensorHealth::State::streaming;
   if (!away && health.restarts == restarts_) return;
   restarts_ = health.restarts;
-  const std::lock_guard lock(mutex_);
-  lost_at_ = Clock::now();
-  watch_.on_sensor_lost();
+  {
+    const std::lock_guard lock(mutex_);
+    lost_at_ = Clock::now();
+    watch_.on_sensor_lost();
+  }
+  for (const auto& task : open_tasks()) task->start_over();
 }
 
 void LiveSensor::check(const Sighting& sighting) {
@@ -146,7 +151,11 @@ void LiveSensor::check(const Sighting& sighting) {
   lock.unlock();
   const auto checked = check_(sighting.view, pose, correction);
   lock.lock();
-  if (number == pose_number_) watch_.on_check(checked, Clock::now());
+  if (number != pose_number_) return;
+  const bool was_plausible = watch_.is_plausible();
+  watch_.on_check(checked, Clock::now());
+  if (was_plausible && !watch_.is_plausible())
+    evidence_.reset();  // it was found where the sensor stood before
 }
 
 void LiveSensor::note(FrameVerdict verdict) {
@@ -181,6 +190,11 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
 }
 
+std::optional<Pose> LiveSensor::plausible_pose() const {
+  const std::lock_guard lock(mutex_);
+  return known_ && watch_.is_plausible() ? known_->result.T_base_sensor : std::nullopt;
+}
+
 void LiveSensor::set_evidence(PoseEvidence evidence) {
   const std::lock_guard lock(mutex_);
   evidence_ = std::move(evidence);
@@ -188,7 +202,7 @@ void LiveSensor::set_evidence(PoseEvidence evidence) {
 
 std::optional<PoseEvidence> LiveSensor::evidence() const {
   const std::lock_guard lock(mutex_);
-  if (evidence_ || !known_) return evidence_;
+  if (evidence_ || !known_ || !watch_.is_plausible()) return evidence_;
   return PoseEvidence{*known_->result.T_base_sensor, known_->result.covariance, {}};
 }
 
@@ -248,6 +262,13 @@ api::SensorReport LiveSensor::report() const {
   report.pose_state = watch_.state();
   report.pose_valid = known_ && watch_.is_valid(now);
   return report;
+}
+
+/// What became of the last frame says nothing of a sensor that sends none.
+std::string LiveSensor::hindrance() const {
+  const auto now = report();
+  if (now.health == name_of(SensorHealth::State::streaming)) return now.views.reason;
+  return "the sensor is " + now.health + (now.reason.empty() ? "" : ": " + now.reason);
 }
 
 double LiveSensor::frame_rate_hz(Clock::time_point now) const {

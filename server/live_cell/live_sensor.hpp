@@ -78,9 +78,12 @@ class LiveSensor {
   /// The pose being served. A stored one is unverified until a check agrees.
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
 
-  /// What the newest calibration has found; counts until another pose takes over.
+  /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
+  std::optional<Pose> plausible_pose() const;
+
+  /// What the newest calibration has found; counts until another pose takes over, or the sensor has drifted.
   void set_evidence(PoseEvidence evidence);
-  /// Without a calibration since the start: of the pose being served. Nothing: there is no pose.
+  /// Without a calibration since the start: of the pose being served, unless it is known to be wrong.
   std::optional<PoseEvidence> evidence() const;
 
   /// Feeds the task with views until it is complete or cancelled.
@@ -91,6 +94,8 @@ class LiveSensor {
 
   api::PoseReport pose() const;
   api::SensorReport report() const;
+  /// Why it gives no views now, and what to do; empty: it does.
+  std::string hindrance() const;
 
  private:
   void run();
@@ -98,7 +103,8 @@ class LiveSensor {
   bool has_size_of_camera(const DepthFrame& frame) const;
   void settle();
   void finish(FrameDecision decision);
-  void serve_tasks(const View& view, bool usable);
+  void serve_tasks(const Sighting& sighting, bool usable);
+  std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);

@@ -87,12 +87,12 @@ std::string robot_basis(const std::filesystem::path& urdf, const RobotModel& mod
          "\nbase link: " + model.base_link() + "\njoint mapping: " + fingerprint_of_mapping(mapping) + "\n";
 }
 
-std::string camera_basis(const CameraModel& camera) {
+std::string camera_basis(const CameraModel& camera, bool mirror) {
   std::ostringstream text;
   text << "intrinsics: " << camera.width << 'x' << camera.height << " fx " << number(camera.fx) << " fy "
        << number(camera.fy) << " cx " << number(camera.cx) << " cy " << number(camera.cy) << " distortion";
   for (const double k : camera.distortion) text << ' ' << number(k);
-  text << '\n';
+  text << "\nmirror: " << (mirror ? "true" : "false") << '\n';
   return text.str();
 }
 

@@ -15,8 +15,8 @@ namespace calibrd {
 std::string robot_basis(const std::filesystem::path& urdf, const RobotModel& model,
                         const JointMapping& mapping);
 
-/// The same of the sensor: its intrinsics.
-std::string camera_basis(const CameraModel& camera);
+/// The same of the sensor: its intrinsics, and whether its rows are flipped.
+std::string camera_basis(const CameraModel& camera, bool mirror);
 
 /// Which lines differ: "intrinsics (were …, are …)"; empty: none.
 std::string basis_changes(const std::string& before, const std::string& now);

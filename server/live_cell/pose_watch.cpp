@@ -79,6 +79,10 @@ std::string PoseWatch::doubt() const {
   return "no check has passed since the pose was restored; it is checked when the robot holds still in view";
 }
 
+bool PoseWatch::is_plausible() const {
+  return state_ != PoseState::uncalibrated && state_ != PoseState::drifted && objection_.empty();
+}
+
 bool PoseWatch::is_valid(Clock::time_point now) const {
   return state_ == PoseState::calibrated && passed_at_ && now - *passed_at_ < settings_.max_unverified;
 }

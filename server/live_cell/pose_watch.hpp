@@ -43,6 +43,8 @@ class PoseWatch {
   void on_check(const PoseCheck& check, Clock::time_point now);
 
   api::PoseState state() const { return state_; }
+  /// There is a pose, and it is not known to be wrong: neither drifted nor found for something else.
+  bool is_plausible() const;
   /// Calibrated, and the last agreeing check is younger than max_unverified.
   bool is_valid(Clock::time_point now) const;
   /// Why the pose is not valid and what to do; empty while it is.

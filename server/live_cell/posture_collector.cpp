@@ -30,6 +30,13 @@ void PostureCollector::offer(const View& view) {
   frames_.clear();
 }
 
+void PostureCollector::start_over() {
+  views_.clear();
+  frames_.clear();
+  seen_ = 0;
+  is_waiting_for_motion_ = false;
+}
+
 bool PostureCollector::is_new(const std::vector<double>& positions) const {
   return std::all_of(views_.begin(), views_.end(), [&](const View& seen) {
     return posture_distance(seen.joint_positions_rad, positions) >= settings_.min_distance_rad;

@@ -23,6 +23,9 @@ class PostureCollector {
   /// The robot has moved: frames of a posture that is not complete yet are dropped.
   void interrupt() { frames_.clear(); }
 
+  /// The sensor may have been moved: what it has seen so far is dropped.
+  void start_over();
+
   bool is_complete() const { return seen() >= settings_.postures; }
   int seen() const { return seen_; }  ///< also once they are taken
   /// The last view offered was of a posture already seen.

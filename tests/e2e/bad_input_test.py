@@ -9,7 +9,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from cell import BIN, OF_THIS_BUILD, SOURCE, URDF, CellTest, call
+from cell import BIN, OF_THIS_BUILD, SENSOR, SOURCE, URDF, CellTest, call
 
 
 class BadInput(CellTest):
@@ -36,6 +36,18 @@ class BadInput(CellTest):
         urdf.write_text(text.replace(old, new))
         return f"robot.urdf={urdf}"
 
+    def test_intrinsics_that_look_like_defaults_are_a_warning_of_the_check(self):
+        check = [BIN / "calibrd", "serve", "--config", SOURCE / "config/demo.toml", "--check-config"]
+        check += [word for setting in OF_THIS_BUILD for word in ("--set", setting)]
+        cases = {(): 0, ("cx=255.5", "cy=211.5"): 1, ("cx=256", "cy=212", "distortion=[0,0,0,0,0]"): 2}
+        for settings, warnings in cases.items():
+            options = [word for setting in settings for word in ("--set", f"sensors.{SENSOR}.{setting}")]
+            ended = subprocess.run([*check, *options], cwd=SOURCE, timeout=20, capture_output=True, text=True, check=False)
+            with self.subTest(settings=settings):
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+                self.assertEqual(ended.stderr.count("like defaults"), warnings, ended.stderr)
+                self.assertIn("the configuration is good", ended.stdout)
+
     def test_a_port_in_use(self):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
@@ -46,6 +58,18 @@ class BadInput(CellTest):
             ended = subprocess.run(["sh", "-c", f'exec "$0" config-reference {redirection}', BIN / "calibrd"],
                                    stderr=subprocess.PIPE, text=True, timeout=20, check=False)
             self.expect_refused(ended, "stdout")
+
+    def test_numbers_of_calibrate_that_are_none(self):
+        options = {"--table-height": ("nan", "inf", "1e400", "10.1", "high", ""), "--workspace": ("nan,0,0", "1e400,0,0"),
+                   "--guess": ("nan,0,0,0,0,0,1", "1e400,0,0,0,0,0,1"), "--roi": ("nan,0,0,1,1,1", "0,0,0,1,1,1e400")}
+        for option, values in options.items():
+            for value in values:
+                method = ("--method", "paper") if option == "--roi" else ()
+                ended = subprocess.run([BIN / "calibrd", "calibrate", self.folder, "--suggest", *method, f"{option}={value}"],
+                                       capture_output=True, text=True, timeout=20, check=False)
+                with self.subTest(option=option, value=value):
+                    self.expect_refused(ended, value)
+                    self.assertNotIn("capture.json", ended.stderr, "the number was taken")
 
     def test_a_mistyped_key_is_named_with_its_line_and_the_nearest_name(self):
         config = self.folder / "typo.toml"

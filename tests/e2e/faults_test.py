@@ -75,6 +75,24 @@ class Faults(CellTest):
             simulator.sensor_mode("normal")
             self.expect_sensor(daemon, True)
 
+    def test_a_sensor_unplugged_while_it_is_calibrated_starts_over_and_the_job_says_so(self):
+        simulator = self.simulate()
+        simulator.hurry()
+        daemon = self.serve(simulator).wait_ready()
+        location = daemon.start_calibration(postures=50)
+        wait_until("a posture is seen", lambda: daemon.json(location)["postures_seen"] > 0)
+        progress = daemon.json(location)["progress"]
+        simulator.sensor_mode("unplugged")
+        self.expect_sensor(daemon, False)
+        job = wait_until("it starts over", lambda: job if (job := daemon.json(location))["postures_seen"] == 0 else None)
+        print(job["message"])
+        self.assertEqual(job["status"], "collecting")
+        self.assertGreaterEqual(job["progress"], progress)
+        self.assertIn("dropped", job["message"])
+        self.assertIn("the sensor is lost", job["message"])
+        simulator.sensor_mode("normal")
+        wait_until("postures are seen again", lambda: daemon.json(location)["postures_seen"] > 0)
+
     def test_a_driver_that_hangs_or_crashes_costs_a_restart_of_the_sensor_process(self):
         simulator = self.simulate()
         daemon = self.serve(simulator).wait_ready()

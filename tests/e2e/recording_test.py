@@ -93,6 +93,12 @@ class Recording(CellTest):
                 ended = self.calibrate_into(redirection)
                 self.assertEqual(ended.returncode, 2, redirection)
                 self.assertIn("stdout", ended.stderr, redirection)
+        with self.subTest("image missing"):
+            self.spoil(lambda c: c["frames"][0].update(image="none.png"))
+            self.expect_refused("none.png")
+            ended = self.calibrate("--depth-only")
+            self.assertNotEqual(ended.returncode, 2, ended.stderr)
+            self.assertEqual(json.loads(ended.stdout)["views"], POSTURES)
         spoilt = {
             "no frame": (lambda c: c.update(frames=[]), "no frame"),
             "unknown format": (lambda c: c.update(format="capture/9"), "capture/1"),

@@ -41,6 +41,15 @@ TEST_F(CalibrationRoutes, EveryKeyOfTheBodyIsTaken) {
   EXPECT_DOUBLE_EQ(wanted_.guess_T_base_sensor->translation().y(), 2);
 }
 
+TEST_F(CalibrationRoutes, NullAsGuessAsksForASearchFromNothing) {
+  EXPECT_EQ(ask("POST", kStart, R"({"guess": null})").status, 202);
+  EXPECT_TRUE(wanted_.from_nothing);
+  EXPECT_EQ(ask("POST", kStart, "{}").status, 202);
+  EXPECT_FALSE(wanted_.from_nothing);
+  EXPECT_EQ(ask("POST", kStart, R"({"guess": [1,2,3,0,0,0,1]})").status, 202);
+  EXPECT_FALSE(wanted_.from_nothing);
+}
+
 TEST_F(CalibrationRoutes, GuessMayBeWhatThePoseRouteGave) {
   cell_.make_calibrated();
   const auto pose = get("/api/v1/sensors/kinect2/pose");

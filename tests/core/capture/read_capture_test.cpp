@@ -50,6 +50,20 @@ TEST(ReadCapture, OptionalKeysMayBeAbsent) {
   EXPECT_FALSE(capture->views[0].image);
 }
 
+TEST(ReadCapture, ImagesThatAreToBeIgnoredAreNotRead) {
+  Recording recording;
+  recording.folder().write("image.png", "garbled");
+  EXPECT_FALSE(recording.read());
+  const auto with_garbled = read_capture(recording.path(), {}, CaptureImages::ignore);
+  ASSERT_TRUE(with_garbled) << with_garbled.error().message();
+  EXPECT_FALSE(with_garbled->views[0].image);
+  EXPECT_EQ(with_garbled->views[0].depth.raw, counting(64, 1000, 3));
+  recording.change("\"image.png\"", "\"none.png\"");
+  EXPECT_TRUE(read_capture(recording.path(), {}, CaptureImages::ignore));
+  recording.folder().write("depth.png", "garbled");
+  EXPECT_FALSE(read_capture(recording.path(), {}, CaptureImages::ignore));
+}
+
 TEST(ReadCapture, UnknownKeysAreIgnored) {
   Recording recording;
   recording.change("\"note\"", "\"made_by\": {\"tool\": [1, null, true]}, \"note\"");

@@ -62,6 +62,14 @@ TEST(Conversions, SensorKeysReachTheSensorProcess) {
   EXPECT_EQ(settings.stream.depth_unit_um, 100);
 }
 
+TEST(Conversions, MirrorReachesSensorAndCell) {
+  SensorConfig sensor;
+  EXPECT_FALSE(sensor_setup("eye", sensor).mirror);
+  sensor.mirror = true;
+  EXPECT_TRUE(sensor_setup("eye", sensor).mirror);
+  EXPECT_TRUE(sensor_settings("eye", sensor).stream.mirror);
+}
+
 TEST(Conversions, LinkKeysReachTheClient) {
   RobotConfig robot;
   robot.host = std::string("h");

@@ -89,8 +89,11 @@ class CellFixture : public ::testing::Test {
         JointMapping::make(joints_in_wire_order(model_->position_names()), model_->position_names());
     ASSERT_TRUE(mapping) << mapping.error().message();
     cell_ = std::make_unique<LiveCell>(settings_, *model_, *virtual_cell_, *std::move(mapping), *store_,
-                                       estimator(), CellLog{[](const auto&) {}, {}});
-    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_}));
+                                       estimator(),
+                                       CellLog{[this](const auto& report) { on_log_(report); },
+                                               {},
+                                               [this](const auto& error) { on_error_(error); }});
+    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_, {}, mirror_}));
     feed_ = std::make_shared<FedSource::Feed>();
     cell_->start("eye", std::make_unique<FedSource>(feed_));
     events_ = cell_->robot_link().events();
@@ -209,6 +212,7 @@ class CellFixture : public ::testing::Test {
   std::filesystem::path folder_;
   CameraModel camera_{32, 24, 30, 30, 15.5, 11.5, {0, 0, 0, 0, 0}};
   std::optional<Pose> guess_ = Pose::Identity();
+  bool mirror_ = false;
   LiveCellSettings settings_ = [] {
     LiveCellSettings settings;
     settings.watch.check_period = std::chrono::milliseconds(5);
@@ -226,6 +230,8 @@ class CellFixture : public ::testing::Test {
   std::uint64_t joints_sent_ = 0, frames_sent_ = 0;
   std::atomic<int> checks_{0};
   std::atomic<bool> agrees_{true};
+  std::function<void(const api::CalibrationReport&)> on_log_ = [](const auto&) {};
+  std::function<void(const std::string&)> on_error_ = [](const auto&) {};
   std::function<CalibrationResult(std::span<const View>, const CalibrationSettings&)> on_calibrate_ =
       [](std::span<const View> views, const CalibrationSettings&) { return accepted(views); };
 };

@@ -29,6 +29,35 @@ TEST_F(NextPosture, IsThereOnceAPoseIsKnownAndAfterARestart) {
   EXPECT_TRUE(cell_->next_posture({"eye", -1}));
 }
 
+TEST_F(NextPosture, IsNotChosenFromAPoseThatHasDriftedButFromWhatACalibrationFindsAfterIt) {
+  on_calibrate_ = [](auto views, const auto&) { return known_to_a_millimetre(accepted(views)); };
+  calibrate();
+  ASSERT_TRUE(cell_->next_posture({"eye", -1}));
+  agrees_ = false;
+  watch_until([&] { return pose().state == api::PoseState::drifted; });
+  const auto refused = cell_->next_posture({"eye", -1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, api::ApiError::calibrate_first);
+  start();
+  EXPECT_EQ(cell_->next_posture({"eye", -1}).error().code, api::ApiError::calibrate_first);
+  on_calibrate_ = [](auto views, const auto&) {
+    auto result = known_to_a_millimetre(accepted(views));
+    result.verdict = Verdict::uncertain;
+    return result;
+  };
+  calibrate();
+  EXPECT_EQ(pose().state, api::PoseState::drifted);
+  watch_until([&] { return cell_->next_posture({"eye", -1}).has_value(); });
+}
+
+TEST_F(NextPosture, IsNotChosenFromAPoseOfAnotherConfiguration) {
+  on_calibrate_ = [](auto views, const auto&) { return known_to_a_millimetre(accepted(views)); };
+  calibrate();
+  camera_.fx *= 1.02;
+  start();
+  EXPECT_EQ(cell_->next_posture({"eye", -1}).error().code, api::ApiError::calibrate_first);
+}
+
 TEST_F(NextPosture, StaysAboveTheTable) {
   on_calibrate_ = [](auto views, const auto&) { return known_to_a_millimetre(accepted(views)); };
   calibrate();

@@ -54,6 +54,19 @@ TEST(PostureCollector, FramesBeforeAMotionDoNotMixWithThoseAfterIt) {
   EXPECT_EQ(collector.seen(), 1);
 }
 
+TEST(PostureCollector, StartsOverWithoutPosturesAndWithoutFramesOfOne) {
+  PostureCollector collector({2, 0.17, 2});
+  for (const double joint : {0.0, 0.0, 0.5}) collector.offer(view(joint));
+  collector.start_over();
+  EXPECT_EQ(collector.seen(), 0);
+  collector.offer(view(0.5));
+  EXPECT_EQ(collector.seen(), 0);
+  collector.offer(view(0.5));
+  EXPECT_EQ(collector.seen(), 1);
+  for (const double joint : {0.0, 0.0}) collector.offer(view(joint));
+  EXPECT_EQ(collector.take_views().size(), 2U);
+}
+
 TEST(FrameAverage, PixelThatJumpsIsNotPutBetweenForegroundAndBackground) {
   const std::vector<View> views{view(0, 1000), view(0, 1002), view(0, 1800)};
   const auto average = average_views(views);

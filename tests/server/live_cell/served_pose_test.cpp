@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of an accepted pose: restarts, checks, other configurations, lost sensors.
+#include <future>
+
+#include "server/storage/sqlite.hpp"
 #include "tests/server/live_cell/cell_fixture.hpp"
 
 namespace calibrd {
@@ -25,6 +28,24 @@ TEST_F(ServedPose, PoseThatNoLongerFitsIsDrifted) {
   agrees_ = false;
   watch_until([&] { return pose().state == PoseState::drifted; });
   EXPECT_FALSE(pose().valid);
+}
+
+TEST_F(ServedPose, DriftThatCannotBeStoredIsAnErrorInTheLog) {
+  std::promise<std::string> error;
+  on_error_ = [&](const std::string& message) { error.set_value(message); };
+  const auto id = calibrate();
+  auto database = Database::open(folder_ / "cell.db");
+  ASSERT_TRUE(database);
+  ASSERT_TRUE(database->run("DROP TABLE drifts", StorageError::cannot_write));
+  agrees_ = false;
+  watch_until([&] { return pose().state == PoseState::drifted; });
+  auto told = error.get_future();
+  ASSERT_EQ(told.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  const auto message = told.get();
+  EXPECT_NE(message.find("sensor eye"), std::string::npos) << message;
+  EXPECT_NE(message.find(id), std::string::npos) << message;
+  EXPECT_NE(message.find("drifts"), std::string::npos) << message;
+  EXPECT_EQ(pose().state, PoseState::drifted);
 }
 
 TEST_F(ServedPose, DriftedPoseIsNotMadeValidByChecksNorByARestart) {
@@ -63,6 +84,17 @@ TEST_F(ServedPose, StoredPoseOfAnotherRobotModelStaysInvalidUntilACalibration) {
   EXPECT_NE(pose().reason.find("robot model"), std::string::npos) << pose().reason;
   calibrate();
   EXPECT_TRUE(pose().valid);
+}
+
+TEST_F(ServedPose, StoredPoseOfUnflippedFramesStaysInvalidForFlippedOnes) {
+  calibrate();
+  mirror_ = true;
+  start();
+  expect_checks_change_nothing();
+  EXPECT_NE(pose().reason.find("mirror (now true, then false)"), std::string::npos) << pose().reason;
+  mirror_ = false;
+  start();
+  watch_until([&] { return pose().valid; });
 }
 
 TEST_F(ServedPose, PoseOfALostSensorIsUnverifiedAtOnceUntilACheckOfALaterFrame) {

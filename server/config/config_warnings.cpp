@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/config_warnings.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr const char* kWhy =
+    " like defaults, not like a calibration of this sensor; wrong intrinsics move the pose by millimetres to "
+    "centimetres, and no view shows it";
+
+/// By either convention: the centre of the first pixel is 0, or its corner.
+bool is_centre(double coordinate, int side) {
+  return coordinate == (side - 1) / 2.0 || coordinate == side / 2.0;
+}
+
+}  // namespace
+
+std::vector<std::string> config_warnings(const Config& config) {
+  std::vector<std::string> warnings;
+  for (const auto& [id, sensor] : config.sensors) {
+    const auto& camera = sensor.camera;
+    if (is_centre(camera.cx, camera.width) && is_centre(camera.cy, camera.height))
+      warnings.push_back("sensors." + id + ": cx and cy are exactly the centre of the image: these look" +
+                         kWhy);
+    if (!camera.is_distorted())
+      warnings.push_back("sensors." + id + ": distortion is all zero: this looks" + kWhy +
+                         " (right only where the device removes the distortion itself)");
+  }
+  return warnings;
+}
+
+}  // namespace calibrd
