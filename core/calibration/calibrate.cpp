@@ -98,7 +98,8 @@ void explain(std::vector<RegistrationView>& views, const CameraModel& camera, co
       "joint_zero_implausible", "low_coverage",       "surface_differs"};
   if (std::ranges::none_of(kPoseIsWrong, [&](std::string_view code) { return has(result, code); })) return;
   for (RegistrationView& view : views) view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
-  if (auto reason = diagnose(views, camera, tried, {})) result.reasons.push_back(*std::move(reason));
+  if (auto reason = diagnose(views, camera, tried, {}))
+    result.reasons.insert(result.reasons.begin(), *std::move(reason));
 }
 
 /// One calibration: views made ready once, and poses tried on them.
@@ -200,6 +201,10 @@ class Calibration {
     describe_evidence(robot, evidence, result);
     judge(refined_, evidence, {}, result);
     judge_margin(chosen, {}, result);
+    if (result.verdict == Verdict::rejected)  // of what is wrong nobody asks how sure it is
+      std::erase_if(result.reasons, [](const Reason& reason) {
+        return reason.code == "position_uncertain" || reason.code == "rotation_uncertain";
+      });
     if (result.T_base_sensor) {
       result.joint_zeros = named_zeros(robot, refined_);
       result.workspace = workspace_errors(result.covariance, *result.T_base_sensor, settings_.workspace);

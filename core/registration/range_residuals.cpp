@@ -56,6 +56,10 @@ ParameterVector jacobian_of(const RegistrationView& view, int link, const Pose& 
   return jacobian;
 }
 
+std::size_t cluster_of(const CameraModel& camera, int x, int y_in_band) {
+  return static_cast<std::size_t>(y_in_band / kBlockSide * (camera.width / kBlockSide + 1) + x / kBlockSide);
+}
+
 /// Tells what a residual is: agreeing, or something in front, or the space behind seen through.
 void count(double residual, double kernel_m, RangeTally& tally) {
   ++tally.measured;
@@ -78,7 +82,7 @@ void observe_range(const RegistrationView& view, const VirtualMeasurement& predi
                    const CameraModel& camera, const Pose& T_base_sensor, const DepthCorrection& correction,
                    const RangeSettings& settings, const RowBand& rows, std::vector<Sample>& samples,
                    RangeTally& tally) {
-  const int step = settings.prediction_step, blocks_per_row = camera.width / kBlockSide + 1;
+  const int step = settings.prediction_step;
   const double pixel_size = 1 / camera.fx;
   for (int row = rows.first; row < std::min(rows.end, prediction.height); row += settings.stride) {
     for (int column = 0; column < prediction.width; column += settings.stride) {
@@ -101,8 +105,7 @@ void observe_range(const RegistrationView& view, const VirtualMeasurement& predi
       if (std::abs(residual) >= settings.kept_kernels * settings.kernel_m) continue;
       Sample& sample = samples.emplace_back();
       sample.depth_m = z;
-      sample.cluster =
-          static_cast<std::size_t>((y - rows.first * step) / kBlockSide * blocks_per_row + x / kBlockSide);
+      sample.cluster = cluster_of(camera, x, y - rows.first * step);
       Observation& o = sample.observation;
       o.residual = residual;
       o.robust_weight = tukey_weight(residual, settings.kernel_m);

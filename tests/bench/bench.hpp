@@ -37,6 +37,9 @@ double median(std::vector<double> values);
 
 const char* name_of(Verdict verdict);
 
+/// As JSON has it: what is not a number is null.
+std::string shown(double value, int decimals);
+
 struct FineOptions {
   std::filesystem::path capture_dir;
   Paths models;

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 
@@ -20,6 +22,19 @@ double check_point_rms_mm(const Input& input, const CalibrationResult& result) {
   return 1e3 * std::sqrt(squares / static_cast<double>(input.check_points.size()));
 }
 
+/// What the guess is off from and the result is held against; complains when there is none.
+std::optional<Pose> reference_of(const Input& input, const FineOptions& options) {
+  if (!options.around.empty()) {
+    auto pose = read_pose(options.around);
+    if (pose) return *pose;
+    std::fprintf(stderr, "calibrd-bench: %s\n", pose.error().message().c_str());
+  } else if (!input.truth_T_base_sensor) {
+    std::fprintf(stderr, "calibrd-bench: %s holds no truth.json; name a pose to start around with --around\n",
+                 options.capture_dir.c_str());
+  }
+  return input.truth_T_base_sensor && options.around.empty() ? input.truth_T_base_sensor : std::nullopt;
+}
+
 }  // namespace
 
 void print_run(const Input& input, const CalibrationResult& result, const Pose& reference) {
@@ -27,16 +42,16 @@ void print_run(const Input& input, const CalibrationResult& result, const Pose& 
       result.T_base_sensor ? difference(reference, *result.T_base_sensor) : Vector6d::Constant(NAN);
   const double nees = error.dot(result.covariance.ldlt().solve(error));
   std::printf(
-      "{\"verdict\": \"%s\", \"error_mm\": %.4f, \"error_mrad\": %.4f, \"sigma_mm\": %.4f, \"sigma_mrad\": "
+      "{\"verdict\": \"%s\", \"error_mm\": %s, \"error_mrad\": %s, \"sigma_mm\": %.4f, \"sigma_mrad\": "
       "%.4f, "
-      "\"nees\": %.2f, \"coverage\": %.3f, \"rms_mm\": %.3f, \"offset_mm\": %.2f, \"scale\": %.5f, \"ms\": "
+      "\"nees\": %s, \"coverage\": %.3f, \"rms_mm\": %.3f, \"offset_mm\": %.2f, \"scale\": %.5f, \"ms\": "
       "%.1f",
-      name_of(result.verdict), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
-      1e3 * result.sigma_position_m, 1e3 * result.sigma_rotation_rad, nees, result.coverage,
-      1e3 * result.residual_rms_m, 1e3 * result.depth_correction.offset_m, result.depth_correction.scale,
-      result.time_total_ms);
+      name_of(result.verdict), shown(1e3 * error.tail<3>().norm(), 4).c_str(),
+      shown(1e3 * error.head<3>().norm(), 4).c_str(), 1e3 * result.sigma_position_m,
+      1e3 * result.sigma_rotation_rad, shown(nees, 2).c_str(), result.coverage, 1e3 * result.residual_rms_m,
+      1e3 * result.depth_correction.offset_m, result.depth_correction.scale, result.time_total_ms);
   if (!input.check_points.empty())
-    std::printf(", \"check_points_mm\": %.3f", check_point_rms_mm(input, result));
+    std::printf(", \"check_points_mm\": %s", shown(check_point_rms_mm(input, result), 3).c_str());
   std::printf(", \"reasons\": [");
   for (std::size_t i = 0; i < result.reasons.size(); ++i)
     std::printf("%s\"%s\"", i > 0 ? ", " : "", result.reasons[i].code.c_str());
@@ -53,20 +68,8 @@ void print_run(const Input& input, const CalibrationResult& result, const Pose& 
 
 int run_fine(const FineOptions& options) {
   const Input input = load(options.capture_dir, options.models);
-  std::optional<Pose> reference = input.truth_T_base_sensor;
-  if (!options.around.empty()) {
-    auto pose = read_pose(options.around);
-    if (!pose) {
-      std::fprintf(stderr, "calibrd-bench: %s\n", pose.error().message().c_str());
-      return 2;
-    }
-    reference = *pose;
-  }
-  if (!reference) {
-    std::fprintf(stderr, "calibrd-bench: %s holds no truth.json; name a pose to start around with --around\n",
-                 options.capture_dir.c_str());
-    return 2;
-  }
+  const std::optional<Pose> reference = reference_of(input, options);
+  if (!reference) return 2;
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<double> share(0, 1);
   std::vector<double> milliseconds, with_verdict;
@@ -78,7 +81,7 @@ int run_fine(const FineOptions& options) {
   CalibrationSettings settings;
   settings.depth_only = options.depth_only;
   settings.guess_T_base_sensor = guess();
-  Vector6d error = Vector6d::Zero();
+  Vector6d error = Vector6d::Constant(NAN);
   const VirtualCell cell(input.robot);
   for (int run = 0; run < options.runs; ++run) {
     if (options.vary && run > 0) settings.guess_T_base_sensor = guess();
@@ -89,10 +92,10 @@ int run_fine(const FineOptions& options) {
     if (result.T_base_sensor) error = difference(*reference, *result.T_base_sensor);
   }
   std::printf(
-      "{\"median_ms\": %.2f, \"median_with_verdict_ms\": %.2f, \"error_mm\": %.4f, \"error_mrad\": %.4f, "
+      "{\"median_ms\": %.2f, \"median_with_verdict_ms\": %.2f, \"error_mm\": %s, \"error_mrad\": %s, "
       "\"views\": %zu}\n",
-      median(milliseconds), median(with_verdict), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm(),
-      input.views.size());
+      median(milliseconds), median(with_verdict), shown(1e3 * error.tail<3>().norm(), 4).c_str(),
+      shown(1e3 * error.head<3>().norm(), 4).c_str(), input.views.size());
   return 0;
 }
 

@@ -22,8 +22,9 @@ void print_starts(const Input& input) {
     const Vector6d error = input.truth_T_base_sensor
                                ? difference(*input.truth_T_base_sensor, starts[i].T_base_sensor)
                                : Vector6d::Constant(NAN).eval();
-    std::printf("%s{\"score\": %.3f, \"error_mm\": %.1f, \"error_mrad\": %.1f}", i > 0 ? ", " : "",
-                starts[i].score.value(), 1e3 * error.tail<3>().norm(), 1e3 * error.head<3>().norm());
+    std::printf("%s{\"score\": %.3f, \"error_mm\": %s, \"error_mrad\": %s}", i > 0 ? ", " : "",
+                starts[i].score.value(), shown(1e3 * error.tail<3>().norm(), 1).c_str(),
+                shown(1e3 * error.head<3>().norm(), 1).c_str());
   }
   std::printf("]}\n");
 }

@@ -15,10 +15,10 @@ CLI::App* add_fine(CLI::App& app, FineOptions& fine) {
   command->add_option("CAPTURE_DIR", fine.capture_dir)->required();
   command->add_option("--models", fine.models, "folders to look robot models up in");
   command->add_option("--around", fine.around, "pose file to start around (default: truth.json)");
-  command->add_option("--offset-mm", fine.offset_mm);
-  command->add_option("--offset-deg", fine.offset_deg);
+  command->add_option("--offset-mm", fine.offset_mm)->check(CLI::Range(0.0, 1e4));
+  command->add_option("--offset-deg", fine.offset_deg)->check(CLI::Range(0.0, 180.0));
   command->add_option("--seed", fine.seed);
-  command->add_option("--runs", fine.runs);
+  command->add_option("--runs", fine.runs)->check(CLI::Range(1, 1000000));
   command->add_flag("--depth-only", fine.depth_only);
   command->add_flag("--vary", fine.vary, "each run starts from another guess, up to the offset away");
   return command;
@@ -28,7 +28,7 @@ CLI::App* add_global(CLI::App& app, GlobalOptions& options) {
   CLI::App* command = app.add_subcommand("global", "calibrate a recording from nothing");
   command->add_option("CAPTURE_DIR", options.capture_dir)->required();
   command->add_option("--models", options.models, "folders to look robot models up in");
-  command->add_option("--runs", options.runs);
+  command->add_option("--runs", options.runs)->check(CLI::Range(1, 1000000));
   command->add_flag("--depth-only", options.depth_only);
   command->add_flag("--starts", options.starts, "print the hypotheses of the search first");
   return command;
@@ -38,8 +38,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
   CLI::App* command = app.add_subcommand("render", "time the virtual sensor, joint update included");
   command->add_option("URDF", render.urdf)->required();
   command->add_option("--models", render.models);
-  command->add_option("--distance-m", render.distance_m);
-  command->add_option("--runs", render.runs);
+  command->add_option("--distance-m", render.distance_m)->check(CLI::Range(0.1, 100.0));
+  command->add_option("--runs", render.runs)->check(CLI::Range(1, 1000000));
 }
 
 CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
@@ -50,12 +50,13 @@ CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   command->add_option("--models", scenes.models, "folders to look robot models up in");
   command->add_option("--level", scenes.level)->check(CLI::IsMember({"clean", "cell", "field", "mixed"}));
   command->add_option("--first-seed", scenes.first_seed);
-  command->add_option("--scenes", scenes.scenes);
+  command->add_option("--scenes", scenes.scenes)->check(CLI::Range(1, 1000000));
   command->add_option("--postures", scenes.postures, "K[,K...]: how many views to calibrate from")
       ->delimiter(',')
       ->check(CLI::Range(1, 1000));
-  command->add_option("--guess-mm", scenes.guess_mm, "how far off the guess is (default: no guess)");
-  command->add_option("--guess-deg", scenes.guess_deg);
+  command->add_option("--guess-mm", scenes.guess_mm, "how far off the guess is (default: no guess)")
+      ->check(CLI::Range(0.0, 1e4));
+  command->add_option("--guess-deg", scenes.guess_deg)->check(CLI::Range(0.0, 180.0));
   command->add_flag("--depth-only", scenes.depth_only);
   command->add_flag("--noise-only", scenes.noise_only, "the robot alone, its depth noisy and nothing else");
   command->add_flag("--bound", scenes.bound, "add the Cramer-Rao bound; needs --noise-only and --depth-only");
@@ -68,8 +69,8 @@ CLI::App* add_register(CLI::App& app, RegisterOptions& clouds) {
   CLI::App* command = app.add_subcommand("register", "register two PLY clouds, starting as they lie");
   command->add_option("--source", clouds.source)->required();
   command->add_option("--target", clouds.target)->required();
-  command->add_option("--runs", clouds.runs)->check(CLI::PositiveNumber);
-  command->add_option("--threads", clouds.threads)->check(CLI::PositiveNumber);
+  command->add_option("--runs", clouds.runs)->check(CLI::Range(1, 1000000));
+  command->add_option("--threads", clouds.threads)->check(CLI::Range(1, 1000000));
   return command;
 }
 
@@ -78,13 +79,13 @@ CLI::App* add_track(CLI::App& app, TrackOptions& track) {
       app.add_subcommand("track", "update a pose that is off by a little by one frame, for every view");
   command->add_option("CAPTURE_DIR", track.capture_dir)->required();
   command->add_option("--models", track.models, "folders to look robot models up in");
-  command->add_option("--runs", track.runs, "starts per view")->check(CLI::PositiveNumber);
-  command->add_option("--offset-mm", track.offset_mm);
-  command->add_option("--offset-deg", track.offset_deg);
+  command->add_option("--runs", track.runs, "starts per view")->check(CLI::Range(1, 1000000));
+  command->add_option("--offset-mm", track.offset_mm)->check(CLI::Range(0.0, 1e4));
+  command->add_option("--offset-deg", track.offset_deg)->check(CLI::Range(0.0, 180.0));
   command->add_option("--seed", track.seed);
-  command->add_option("--stride", track.stride)->check(CLI::PositiveNumber);
-  command->add_option("--steps", track.steps)->check(CLI::PositiveNumber);
-  command->add_option("--threads", track.threads)->check(CLI::PositiveNumber);
+  command->add_option("--stride", track.stride)->check(CLI::Range(1, 1000000));
+  command->add_option("--steps", track.steps)->check(CLI::Range(1, 1000000));
+  command->add_option("--threads", track.threads)->check(CLI::Range(1, 1000000));
   return command;
 }
 
@@ -105,7 +106,11 @@ int main(int argc, char** argv) {
   const CLI::App* scenes_command = add_scenes(app, scenes);
   const CLI::App* register_command = add_register(app, clouds);
   const CLI::App* track_command = add_track(app, track);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   if (register_command->parsed()) return run_register(clouds);
   if (track_command->parsed()) return run_track(track);
   if (global_command->parsed()) return run_global(global);
