@@ -11,9 +11,8 @@
 namespace calibrd {
 namespace {
 
-constexpr std::size_t kEnough = 4000;  // samples that tell the scatter well
-constexpr std::size_t kLeast = 150;    // ... and of each kind, that tell it at all
-constexpr double kSlanted = 2.5;       // depth per pixel over axial sigma from which a surface is slanted
+constexpr std::size_t kLeast = 150;  // samples of each kind that tell their scatter
+constexpr double kSlanted = 2.5;     // depth per pixel over axial sigma from which a surface is slanted
 constexpr double kMost_px = 1.0, kStep_px = 0.1;
 
 struct Scatter {
@@ -35,14 +34,13 @@ double whitened_scatter(const std::vector<Scatter>& all, double lateral_px) {
 std::optional<double> find_lateral_noise(std::span<const Sample> samples, double lateral_px,
                                          double sigma_factor) {
   std::vector<Scatter> flat, slanted;
-  const std::size_t stride = std::max<std::size_t>(1, samples.size() / kEnough);
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const Observation& o = samples[i].observation;
+  for (const Sample& sample : samples) {
+    const Observation& o = sample.observation;
     if (o.robust_weight <= 0) continue;
-    const double sigma_m = o.sigma / sigma_factor, lateral_m = lateral_px * samples[i].depth_per_pixel_m;
+    const double sigma_m = o.sigma / sigma_factor, lateral_m = lateral_px * sample.depth_per_pixel_m;
     const double axial_m = std::sqrt(std::max(sigma_m * sigma_m - lateral_m * lateral_m, 1e-12));
-    const bool is_slanted = samples[i].depth_per_pixel_m > kSlanted * axial_m;
-    (is_slanted ? slanted : flat).push_back({o.residual, axial_m, samples[i].depth_per_pixel_m});
+    const bool is_slanted = sample.depth_per_pixel_m > kSlanted * axial_m;
+    (is_slanted ? slanted : flat).push_back({o.residual, axial_m, sample.depth_per_pixel_m});
   }
   if (flat.size() < kLeast || slanted.size() < kLeast) return std::nullopt;
   for (double tried_px = 0; tried_px < kMost_px; tried_px += kStep_px)

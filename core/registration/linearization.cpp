@@ -98,9 +98,21 @@ ViewSums Linearization::sums(const ParameterVector& delta) const {
   return total;
 }
 
-std::vector<Sample> Linearization::range_samples() const {
+std::size_t Linearization::range_count() const {
+  std::size_t count = 0;
+  for (const Band& band : bands_) count += band.range.size();
+  return count;
+}
+
+std::vector<Sample> Linearization::range_samples(std::size_t most) const {
+  const std::size_t stride = std::max<std::size_t>(1, range_count() / most);
   std::vector<Sample> samples;
-  for (const Band& band : bands_) samples.insert(samples.end(), band.range.begin(), band.range.end());
+  samples.reserve(range_count() / stride + 1);
+  std::size_t next = 0;  // counted over the bands, so that none is favoured
+  for (const Band& band : bands_) {
+    for (; next < band.range.size(); next += stride) samples.push_back(band.range[next]);
+    next -= band.range.size();
+  }
   return samples;
 }
 

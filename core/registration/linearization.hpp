@@ -46,7 +46,9 @@ class Linearization {
   /// The sums where the parameters have moved by `delta`; robust weights are those of the residuals there.
   ViewSums sums(const ParameterVector& delta) const;
 
-  std::vector<Sample> range_samples() const;
+  std::size_t range_count() const;
+  /// Evenly thinned to about `most`.
+  std::vector<Sample> range_samples(std::size_t most) const;
 
  private:
   /// Of one view; bands are worked on in parallel.

@@ -52,6 +52,7 @@ void NormalEquations::add(const Observation& o, std::size_t id) {
   Cluster& cluster = clusters_[id];
   const double whitened = o.robust_weight * o.residual / o.sigma;
   cluster.gradient += pull;
+  cluster.whitened_jacobian += o.robust_weight / o.sigma * o.jacobian;
   cluster.whitened_sum += whitened;
   cluster.whitened_squares += whitened * whitened;
 }
@@ -79,10 +80,13 @@ double NormalEquations::rms_residual() const {
   return weight_sum_ > 0 ? std::sqrt(residual_squares_ / weight_sum_) : 0;
 }
 
-double NormalEquations::correlation_factor() const {
+double NormalEquations::correlation_factor() const { return correlation_factor(ParameterVector::Zero()); }
+
+double NormalEquations::correlation_factor(const ParameterVector& delta) const {
   double sums = 0, squares = 0;
   for (const Cluster& cluster : clusters_) {
-    sums += cluster.whitened_sum * cluster.whitened_sum;
+    const double moved = cluster.whitened_sum - cluster.whitened_jacobian.dot(delta);
+    sums += moved * moved;
     squares += cluster.whitened_squares;
   }
   return squares > 0 ? std::max(1.0, sums / squares) : 1.0;

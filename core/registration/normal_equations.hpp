@@ -81,6 +81,8 @@ class NormalEquations {
   /// How many times the scatter of the cluster sums exceeds that of independent observations (1 =
   /// independent): the factor by which a covariance that assumes independence is too small, at least 1.
   double correlation_factor() const;
+  /// The same where the parameters have moved by `delta`.
+  double correlation_factor(const ParameterVector& delta) const;
 
   /// Σ over clusters of g gᵀ: the middle of the sandwich covariance.
   ParameterMatrix cluster_scatter() const;
@@ -88,8 +90,9 @@ class NormalEquations {
  private:
   struct Cluster {
     ParameterVector gradient = ParameterVector::Zero();
-    double whitened_sum = 0;      // Σ w r/σ
-    double whitened_squares = 0;  // Σ (w r/σ)²
+    ParameterVector whitened_jacobian = ParameterVector::Zero();  // Σ w J/σ
+    double whitened_sum = 0;                                      // Σ w r/σ
+    double whitened_squares = 0;                                  // Σ (w r/σ)²
   };
   // Columns are padded to whole vector registers; only what lies on and below the diagonal is kept up.
   static constexpr int kPadded = (kParameters + 3) / 4 * 4;

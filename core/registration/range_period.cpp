@@ -16,8 +16,6 @@ namespace {
 // Modulation of 16 to 120 MHz and its harmonics wiggle with periods of this order; longer ones pass for a
 // scale.
 constexpr double kCandidates_m[] = {0.30, 0.36, 0.43, 0.50, 0.58, 0.66, 0.75, 0.85, 0.97, 1.10, 1.25};
-/// The cost has a wide minimum over periods: so many samples find it as well as all of them.
-constexpr std::size_t kEnoughSamples = 6000;
 
 /// Noise lets the cost fall by about as much through an amplitude and a phase: 2 for one period, more for the
 /// best of several.
@@ -39,30 +37,23 @@ Fit solved(const Known& known) {
   return {known.gradient.dot(solution), solution};
 }
 
-/// Every `stride`-th sample counts for as many, and as `sample_weight` says.
-double weight_of(const Observation& o, double sample_weight, std::size_t stride) {
-  return static_cast<double>(stride) * sample_weight * o.robust_weight / (o.sigma * o.sigma);
-}
-
-Known without_period(std::span<const Sample> samples, double sample_weight, std::size_t stride, Known rest) {
+Known without_period(std::span<const Sample> samples, double sample_weight, Known rest) {
   NormalEquations sums;
-  for (std::size_t i = 0; i < samples.size(); i += stride) sums.add(samples[i].observation, 0);
-  const double weight = static_cast<double>(stride) * sample_weight;
-  rest.information += weight * ParameterMatrix(sums.information().selfadjointView<Eigen::Lower>());
-  rest.gradient += weight * sums.gradient();
+  for (const Sample& sample : samples) sums.add(sample.observation, 0);
+  rest.information += sample_weight * ParameterMatrix(sums.information().selfadjointView<Eigen::Lower>());
+  rest.gradient += sample_weight * sums.gradient();
   return rest;
 }
 
-Fit fit_with(std::span<const Sample> samples, double sample_weight, std::size_t stride, const Known& without,
-             double period_m) {
+Fit fit_with(std::span<const Sample> samples, double sample_weight, const Known& without, double period_m) {
   ParameterVector by_sine = ParameterVector::Zero(), by_cosine = ParameterVector::Zero();
   Eigen::Matrix2d own = Eigen::Matrix2d::Zero();
   Eigen::Vector2d pull = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const Observation& o = samples[i].observation;
-    const double weight = weight_of(o, sample_weight, stride);
+  for (const Sample& sample : samples) {
+    const Observation& o = sample.observation;
+    const double weight = sample_weight * o.robust_weight / (o.sigma * o.sigma);
     if (weight <= 0) continue;
-    const double phase = 2 * std::numbers::pi * samples[i].depth_m / period_m;
+    const double phase = 2 * std::numbers::pi * sample.depth_m / period_m;
     const Eigen::Vector2d wave(std::sin(phase), std::cos(phase));
     by_sine += weight * wave[0] * o.jacobian;
     by_cosine += weight * wave[1] * o.jacobian;
@@ -84,12 +75,11 @@ Fit fit_with(std::span<const Sample> samples, double sample_weight, std::size_t 
 std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double sample_weight,
                                         const ParameterMatrix& rest_information,
                                         const ParameterVector& rest_gradient) {
-  const std::size_t stride = std::max<std::size_t>(1, samples.size() / kEnoughSamples);
-  const Known without = without_period(samples, sample_weight, stride,
+  const Known without = without_period(samples, sample_weight,
                                        {rest_information.selfadjointView<Eigen::Lower>(), rest_gradient});
   std::array<Fit, std::size(kCandidates_m)> fits;
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
-    fits[i] = fit_with(samples, sample_weight, stride, without, kCandidates_m[i]);
+    fits[i] = fit_with(samples, sample_weight, without, kCandidates_m[i]);
   });
   const auto best = std::ranges::max_element(fits, {}, &Fit::gain);
   // Of noise alone some candidate makes the cost fall, too: what is left of the amplitude without that is how

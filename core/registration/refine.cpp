@@ -31,6 +31,7 @@ constexpr double kMinKernel_m = 0.006;
 constexpr int kStepsPerRendering = 3;
 constexpr double kSettled = 0.1;  // sigmas: a step so small is the last on one rendering
 constexpr int kContourStride = 2;
+constexpr std::size_t kPeriodSamples = 6000;  // the cost has a wide minimum over periods
 constexpr int kFullMoves = 3;
 /// Chance lets the cost fall by as much through seven joint zeros once in twenty times. Zeros of a robot that
 /// has none would only carry noise into the pose.
@@ -116,12 +117,13 @@ class Refiner {
     return range;
   }
 
-  NormalEquations range_at_its_best(const Stage& stage, const ViewSums& sums) const {
+  /// How far from the rendering range alone would have the parameters.
+  ParameterVector range_alone(const Stage& stage, const ViewSums& sums) const {
     const double scale = robust_sigma(sums.range_tally.whitened);
     ParameterVector gradient;
     const ParameterMatrix information =
         with_priors(sums.range.scaled(1 / (scale * scale)), stage, ParameterVector::Zero(), gradient);
-    return latest_.sums(information.ldlt().solve(gradient)).range;
+    return information.ldlt().solve(gradient);
   }
 
   /// Everything known before the views were seen, as one observation per parameter. `delta`: how far the
@@ -165,8 +167,10 @@ class Refiner {
     ParameterMatrix information = edges.information();
     ParameterVector gradient = edges.gradient();
     add_priors(stage, -latest_delta_, information, gradient);
-    if (const auto term =
-            find_period(latest_.range_samples(), noise_.range_weight(sums), information, gradient)) {
+    const std::vector<Sample> samples = latest_.range_samples(kPeriodSamples);
+    const double each_for = static_cast<double>(latest_.range_count()) /
+                            static_cast<double>(std::max<std::size_t>(1, samples.size()));
+    if (const auto term = find_period(samples, each_for * noise_.range_weight(sums), information, gradient)) {
       result_.correction.periodic_period_m = period_start_m_ = term->period_m;
       result_.correction.periodic_sin_m = term->sin_m;
       result_.correction.periodic_cos_m = term->cos_m;
@@ -182,7 +186,7 @@ class Refiner {
     for (int step = 0; step < kStepsPerRendering; ++step) {
       const ViewSums sums = latest_.sums(delta);
       if (step == 0 && stage.range_kernel_m == 0)
-        found = noise_.found_in(latest_, sums, range_at_its_best(stage, sums));
+        found = noise_.found_in(latest_, sums, range_alone(stage, sums));
       if (step == 0) found.note_edges(sums);
       const NormalEquations all = found.weighed(sums);
       if (all.count() < 50) return;

@@ -12,6 +12,7 @@ namespace {
 /// Depth edges are found to half a pixel: most of them may agree to nothing, which says nothing of their
 /// errors.
 constexpr double kMinEdgeScatter = 0.5;
+constexpr std::size_t kLateralSamples = 2000;  // tell the scatter well enough
 
 }  // namespace
 
@@ -23,12 +24,12 @@ void SensorNoise::note_edges(const ViewSums& sums) {
 }
 
 SensorNoise SensorNoise::found_in(const Linearization& around, const ViewSums& sums,
-                                  const NormalEquations& range_at_its_best) const {
+                                  const ParameterVector& range_alone) const {
   SensorNoise found = *this;
-  found.range_correlation = range_at_its_best.correlation_factor();
+  found.range_correlation = sums.range.correlation_factor(range_alone);
   for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
     found.edges[k].correlation = sums.contour[k].equations.correlation_factor();
-  if (const auto px = find_lateral_noise(around.range_samples(), lateral_px, sigma_factor))
+  if (const auto px = find_lateral_noise(around.range_samples(kLateralSamples), lateral_px, sigma_factor))
     found.lateral_px = *px;
   found.sigma_factor = std::clamp(sigma_factor * robust_sigma(sums.range_tally.whitened), 0.3, 20.0);
   return found;

@@ -22,11 +22,11 @@ struct SensorNoise {
 
   void note_edges(const ViewSums& sums);
 
-  /// `around`: observed with this noise; `sums`: its sums where it was made; `range_at_its_best`: the range's
-  /// sums where range alone would have the parameters. Judged anywhere else, a pull between range and outline
+  /// `around`: observed with this noise; `sums`: its sums where it was made; `range_alone`: how far from
+  /// there range alone would have the parameters. Judged anywhere else, a pull between range and outline
   /// would pass for correlated noise, take the range's weight, and so grow.
   SensorNoise found_in(const Linearization& around, const ViewSums& sums,
-                       const NormalEquations& range_at_its_best) const;
+                       const ParameterVector& range_alone) const;
 
   /// Factor on the range's weights.
   double range_weight(const ViewSums& sums) const;
