@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/base/memory.hpp"
 #include "server/calibrate_command.hpp"
 #include "server/config/print_config.hpp"
 #include "server/serve_command.hpp"
@@ -56,6 +57,7 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  calibrd::keep_freed_memory();
   try {
     return with_output_written(dispatch(argc, argv));
   } catch (const std::exception& failure) {

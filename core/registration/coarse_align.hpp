@@ -10,7 +10,7 @@ namespace calibrd {
 struct CoarseSettings {
   double start_kernel_m = 0.15;  ///< correspondences further apart than this have no weight at first ...
   double end_kernel_m = 0.03;    ///< ... and than this in the end
-  int iterations = 30;
+  int iterations = 16;
   int reduction = 4;           ///< the prediction is made on a grid this many times coarser
   double crop_margin_m = 0.3;  ///< measured points further from the robot's bounding box are left out
 };

@@ -90,9 +90,13 @@ ViewSums Linearization::sums_of(const Band& band, const ParameterVector& delta) 
 }
 
 ViewSums Linearization::sums(const ParameterVector& delta) const {
+  constexpr std::size_t kSoonSummed = 1500;  // sooner than a second thread wakes up
   std::vector<ViewSums> of_bands(bands_.size());
-  tbb::parallel_for(std::size_t{0}, bands_.size(),
-                    [&](std::size_t b) { of_bands[b] = sums_of(bands_[b], delta); });
+  const auto sum_band = [&](std::size_t b) { of_bands[b] = sums_of(bands_[b], delta); };
+  if (range_count() < kSoonSummed)
+    for (std::size_t b = 0; b < bands_.size(); ++b) sum_band(b);
+  else
+    tbb::parallel_for(std::size_t{0}, bands_.size(), sum_band);
   ViewSums total;
   for (const ViewSums& sums : of_bands) total.merge(sums);
   return total;
@@ -102,6 +106,13 @@ std::size_t Linearization::range_count() const {
   std::size_t count = 0;
   for (const Band& band : bands_) count += band.range.size();
   return count;
+}
+
+double Linearization::nearest_m() const {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const Band& band : bands_)
+    for (const Sample& sample : band.range) nearest_m = std::min(nearest_m, sample.depth_m);
+  return std::isfinite(nearest_m) ? nearest_m : 1;
 }
 
 std::vector<Sample> Linearization::range_samples(std::size_t most) const {

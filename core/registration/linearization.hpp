@@ -47,6 +47,7 @@ class Linearization {
   ViewSums sums(const ParameterVector& delta) const;
 
   std::size_t range_count() const;
+  double nearest_m() const;  ///< depth of the nearest range sample; 1 when there is none
   /// Evenly thinned to about `most`.
   std::vector<Sample> range_samples(std::size_t most) const;
 

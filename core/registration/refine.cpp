@@ -30,7 +30,8 @@ constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on no
 constexpr double kMinKernel_m = 0.006;
 constexpr int kStepsPerRendering = 3;
 constexpr double kSettled = 0.1;  // sigmas: a step so small is the last on one rendering
-constexpr int kContourStride = 2;
+constexpr int kContourStride = 2, kFineContourStride = 3;
+constexpr double kSamePlace_px = 0.1;
 constexpr std::size_t kPeriodSamples = 6000;  // the cost has a wide minimum over periods
 constexpr int kFullMoves = 3;
 /// Chance lets the cost fall by as much through seven joint zeros once in twenty times. Zeros of a robot that
@@ -39,7 +40,7 @@ constexpr double kSignificantFall = 14;
 /// What the model leaves out (shading, mesh errors, the robust kernels' choice of pixels) made errors on
 /// simulated captures this much larger, squared, than the scatter of residuals alone says. Part of it is
 /// common to all pixels of a view and averages over views only.
-constexpr double kModelAllowance = 1.25, kModelAllowanceOfOneView = 0.3;
+constexpr double kModelAllowance = 1.25, kModelAllowanceOfOneView = 0.45;
 
 class Refiner {
  public:
@@ -55,7 +56,7 @@ class Refiner {
                             {1, 2, 0, 5, false, true, false}};
     const bool zeros = settings_.joint_zero_prior > 0;
     Stage closing{settings_.final_renderings, 2, 0, 3, true, true, zeros};
-    Stage last{3, 1, 0, 3, true, true, zeros};
+    Stage last{2, 1, 0, 3, true, true, zeros};
     const Stage judged = last;  // what is known is known with the zeros free, whether they are used or not
     double progress = 0;
     for (const Stage& stage : stages) {
@@ -88,7 +89,8 @@ class Refiner {
     for (std::size_t k = 0; k < kEdgeSources.size(); ++k)
       settings.contour[k] = contour_settings(stage, kEdgeSources[k]);
     settings.stride = stage.stride;
-    settings.contour_stride = stage.contour_search_px > 0 ? kContourStride : 0;
+    settings.contour_stride =
+        stage.contour_search_px > 0 ? (stage.stride == 1 ? kFineContourStride : kContourStride) : 0;
     latest_.observe(views_, predictions_, camera_, result_.T_base_sensor, result_.correction, settings);
   }
 
@@ -181,7 +183,7 @@ class Refiner {
   /// Renders once and moves to where the steps lead.
   void move(const Stage& stage, int rendering) {
     linearize(stage);
-    ParameterVector delta = ParameterVector::Zero();
+    ParameterVector delta = ParameterVector::Zero(), full_step = delta;
     SensorNoise found = noise_;  // with which the next rendering is looked at
     for (int step = 0; step < kStepsPerRendering; ++step) {
       const ViewSums sums = latest_.sums(delta);
@@ -192,12 +194,12 @@ class Refiner {
       if (all.count() < 50) return;
       ParameterVector gradient;
       last_information_ = with_priors(all, stage, delta, gradient);
-      const ParameterVector full_step = last_information_.ldlt().solve(gradient);
+      full_step = last_information_.ldlt().solve(gradient);
       delta += full_step;
       if (full_step.dot(gradient) < kSettled * kSettled) break;
     }
     noise_ = found;
-    note_move(delta.head<6>());
+    note_move(delta.head<6>(), full_step.head<6>());
     // Image edges and pixels change sides between renderings; halved moves settle that jitter.
     latest_delta_ = (rendering < kFullMoves ? 1.0 : 0.5) * delta;
     apply(latest_delta_, stage.free_zeros);
@@ -225,8 +227,9 @@ class Refiner {
 
   /// How far the pose still drifts: the mean of the stage's last moves, whole ones, in its own standard
   /// deviations. Pixels that change sides make single moves jitter; what has not settled keeps its direction
-  /// and its size.
-  void note_move(const Vector6d& pose_move) {
+  /// and its size. A move that shifts no pixel's ray off its place on the surface needs no other rendering:
+  /// the steps on this one have settled what there was to settle.
+  void note_move(const Vector6d& pose_move, const Vector6d& last_step) {
     constexpr std::size_t kRemembered = 2;
     moves_.push_back(pose_move);
     if (moves_.size() > kRemembered) moves_.erase(moves_.begin());
@@ -234,8 +237,14 @@ class Refiner {
     for (const Vector6d& move : moves_) mean += move / static_cast<double>(moves_.size());
     const ParameterMatrix covariance = last_information_.ldlt().solve(ParameterMatrix::Identity());
     const Eigen::LDLT<Matrix6d> of_pose(covariance.topLeftCorner<6, 6>());
-    last_move_ = std::sqrt(pose_move.dot(of_pose.solve(pose_move)) / 6);
+    const Vector6d& judged = shift_px(pose_move) < kSamePlace_px ? last_step : pose_move;
+    last_move_ = std::sqrt(judged.dot(of_pose.solve(judged)) / 6);
     result_.last_step_sigmas = std::min(last_move_, std::sqrt(mean.dot(of_pose.solve(mean)) / 6));
+  }
+
+  /// At most so far (px) a move shifts what the sensor sees of the robot.
+  double shift_px(const Vector6d& pose_move) const {
+    return camera_.fx * (pose_move.head<3>().norm() + pose_move.tail<3>().norm() / latest_.nearest_m());
   }
 
   void finish(const Stage& stage) {

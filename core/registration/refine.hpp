@@ -22,7 +22,7 @@ struct RefineSettings {
   bool use_depth_outline = true;    ///< false: range alone, and images where there are any
   int final_renderings = 5;
   /// A move this small against the uncertainty of the result ends the iteration.
-  double convergence_sigmas = 0.3;
+  double convergence_sigmas = 0.5;
   std::function<bool(double)> keep_going;  ///< called with the progress 0..1; false ends the refinement early
 };
 

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "bench.hpp"
+#include "core/base/memory.hpp"
 
 namespace {
 
@@ -92,6 +93,7 @@ CLI::App* add_track(CLI::App& app, TrackOptions& track) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  calibrd::keep_freed_memory();
   CLI::App app("Measures calibrd. Prints JSON lines.");
   app.require_subcommand(1);
   FineOptions fine;
