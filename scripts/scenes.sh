@@ -7,6 +7,7 @@
 #   scripts/scenes.sh --short     12 of them
 #   scripts/scenes.sh --bound     60 scenes of noise alone, depth alone: errors over the Cramer-Rao bound
 #   --tuning        seeds from 1 instead of from 100001: 1..999 are for tuning, the others for reports, never both
+#   --first-seed S  other seeds for the report, from 100001 on
 #   --scenes N      another number of scenes
 #   --postures K,K  other numbers of postures
 #   --keep FILE     where to leave the JSON lines
@@ -29,6 +30,7 @@ while [ $# -gt 0 ]; do
     --short) short=12 ;;
     --bound) mode=(--bound) scenes=60 postures=10,6,4 ;;
     --tuning) first=1 ;;
+    --first-seed) first=${2:?--first-seed needs a number} && shift ;;
     --scenes) short=${2:?--scenes needs a number} && shift ;;
     --postures) only=${2:?--postures needs numbers} && shift ;;
     --keep) kept=${2:?--keep needs a file} && shift ;;

@@ -130,9 +130,10 @@ class Calibration {
     const Pose misled = refined_.T_base_sensor;
     if (views_.size() > 1) {
       CalibrationResult searched = from_nothing_unexplained();
-      if (searched.verdict != Verdict::rejected) return searched;
+      if (searched.verdict != Verdict::rejected || is_cancelled()) return searched;
     }
-    explain(views_, camera_, {{misled}, true, has(result, "surface_differs")}, result);
+    explain(views_, camera_, {{misled, refined_.T_base_sensor}, false, has(result, "surface_differs")},
+            result);
     return result;
   }
 
@@ -143,14 +144,24 @@ class Calibration {
     return result;
   }
 
+  /// A hypothesis that the measurement contradicts makes room for the next one.
   CalibrationResult from_nothing_unexplained() {
+    for (RegistrationView& view : views_) view.apply_zeros(JointZeros::Zero());
     const auto chosen = choose_start(views_, camera_);
     if (!chosen)
       return rejected({"nothing_moved",
                        "nothing that could be the robot moves between the postures in view; let the arm "
                        "move in view, check the joints that come from the controller, or give a guess"},
                       views_.size());
-    return tried(chosen->T_base_sensor, chosen);
+    CalibrationResult result = tried(chosen->T_base_sensor, chosen);
+    const Refinement refined = refined_;
+    for (const Pose& other : chosen->others) {
+      if (result.verdict != Verdict::rejected || is_cancelled()) return result;
+      CalibrationResult next = tried(other, std::nullopt);
+      if (next.verdict != Verdict::rejected) return next;
+    }
+    refined_ = refined;
+    return result;
   }
 
   /// The robot may be any part of a single view: what is found is never more than uncertain.
@@ -158,8 +169,10 @@ class Calibration {
     const auto starts = starts_of_one(views_[0], camera_);
     CalibrationResult best = rejected({"nothing_found", "nothing in the view looks like the robot"}, 1);
     for (const StartHypothesis& start : starts) {
-      best = tried(start.T_base_sensor, std::nullopt);
-      if (best.verdict != Verdict::rejected || is_cancelled()) break;
+      CalibrationResult next = tried(start.T_base_sensor, std::nullopt);
+      const bool is_good = next.verdict != Verdict::rejected;
+      if (is_good || &start == &starts.front()) best = std::move(next);
+      if (is_good || is_cancelled()) break;
     }
     if (best.verdict != Verdict::rejected)
       doubt("one_view",
@@ -188,18 +201,49 @@ class Calibration {
     refined_ = refine(views_, camera_, start, refinement);
     const double time_to_pose_ms = ms_since(begin_);
     if (is_cancelled()) return {};
-    CalibrationResult result = judged(chosen);
+    CalibrationResult result = judged_without_odd_views(chosen, refinement);
     result.time_to_pose_ms = time_to_pose_ms;
     return result;
   }
 
+  /// A few views in which the robot is not where their joints put it (it still moved, or something hides it)
+  /// spoil no calibration from enough others: they are left out, and the rest is judged anew.
+  CalibrationResult judged_without_odd_views(const std::optional<ChosenStart>& chosen,
+                                             const RefineSettings& refinement) {
+    constexpr std::size_t kLeastLeft = 4;
+    std::vector<std::size_t> odd;
+    CalibrationResult result = judged(chosen, odd);
+    if (result.verdict != Verdict::uncertain || odd.empty() || views_.size() < odd.size() + kLeastLeft)
+      return result;
+    std::vector<RegistrationView> all = views_;
+    std::string named;
+    for (std::size_t i = odd.size(); i-- > 0;) {
+      views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(odd[i]));
+      named.insert(0, std::to_string(odd[i]) + (i + 1 < odd.size() ? ", " : ""));
+    }
+    Refinement refined = refine(views_, camera_, refined_.T_base_sensor, refinement);
+    std::swap(refined, refined_);
+    CalibrationResult of_rest = judged(chosen, odd);
+    if (of_rest.verdict == Verdict::accepted) {
+      of_rest.reasons.push_back({"view_left_out", "view " + named +
+                                                      " does not show the robot where its joints put it, and "
+                                                      "was left out; was the robot still?"});
+      return of_rest;
+    }
+    std::swap(refined, refined_);
+    views_ = std::move(all);
+    return result;
+  }
+
   /// The verdict with everything that speaks for and against it.
-  CalibrationResult judged(const std::optional<ChosenStart>& chosen) const {
+  CalibrationResult judged(const std::optional<ChosenStart>& chosen,
+                           std::vector<std::size_t>& odd_views) const {
     const RobotModel& robot = views_.front().cell.robot();
     CalibrationResult result;
     const Evidence evidence = gather_evidence(views_, camera_, refined_);
     describe_evidence(robot, evidence, result);
     judge(refined_, evidence, {}, result);
+    odd_views = views_at_odds(refined_, evidence, {});
     judge_margin(chosen, {}, result);
     if (result.verdict == Verdict::rejected)  // of what is wrong nobody asks how sure it is
       std::erase_if(result.reasons, [](const Reason& reason) {

@@ -33,7 +33,11 @@ std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> view
 }
 
 ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
-  ChosenStart chosen{starts.front().T_base_sensor, std::nullopt, Pose::Identity()};
+  constexpr std::size_t kMostOthers = 2;
+  ChosenStart chosen{starts.front().T_base_sensor, std::nullopt, Pose::Identity(), {}};
+  for (const StartHypothesis& start : starts)
+    if (chosen.others.size() < kMostOthers && !is_same(start.T_base_sensor, chosen.T_base_sensor))
+      chosen.others.push_back(start.T_base_sensor);
   const auto other = std::ranges::find_if(starts, [&](const StartHypothesis& start) {
     return !is_same(start.T_base_sensor, chosen.T_base_sensor);
   });

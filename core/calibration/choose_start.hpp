@@ -15,6 +15,7 @@ struct ChosenStart {
   Pose T_base_sensor = Pose::Identity();
   std::optional<double> margin;  ///< score over the best hypothesis elsewhere; nothing when there is none
   Pose T_base_runner_up = Pose::Identity();  ///< that one; set with `margin`
+  std::vector<Pose> others;                  ///< further hypotheses, best first, two at most
 };
 
 /// Where the robot might be in a single view, best first, at most five: nothing moved, so anything may be it.

@@ -80,6 +80,7 @@ double best_score(const Input& input, std::span<const PixelMask> moving, std::ve
 
 /// Of the joints there are many explanations: each is searched in less detail.
 std::vector<Pose> searched(const Input& input, bool thoroughly) {
+  if (input.views.size() < 2) return {};
   StartSettings settings;
   settings.convincing = -1;  // most explanations are wrong: no second look at what fits badly
   if (!thoroughly) {

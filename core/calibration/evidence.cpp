@@ -80,6 +80,7 @@ OneViewSums sums_of(const RegistrationView& view, const VirtualMeasurement& pred
   RangeSettings settings;
   settings.kernel_m = kReach_m;
   settings.sigma_factor = refined.sigma_factor;
+  settings.lateral_px = refined.lateral_px;
   settings.stride = 3;
   OneViewSums sums;
   RangeTally tally;

@@ -36,6 +36,20 @@ std::string named(const std::vector<WeakDirection>& weak, bool is_rotation) {
   return text;
 }
 
+/// Share of the robot in a view that is where it should be, or behind something.
+double found_or_hidden(const SurfaceTally& tally) {
+  return share(tally.agreeing + tally.occluded, tally.predicted);
+}
+
+/// Where nothing stands behind the robot it cannot be seen through: then it is only missing.
+double usually_found(const Evidence& evidence) {
+  std::vector<double> shares;
+  for (const SurfaceTally& tally : evidence.views) shares.push_back(found_or_hidden(tally));
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return *middle;
+}
+
 class Judge {
  public:
   Judge(const VerdictSettings& settings, CalibrationResult& result) : settings_(settings), result_(result) {}
@@ -95,20 +109,17 @@ class Judge {
   /// What the pixels say view by view.
   void contradictions(const Evidence& evidence, const Refinement& r) {
     std::string at_odds;
-    std::size_t count = 0;
-    for (std::size_t v = 0; v < evidence.views.size(); ++v) {
-      if (!is_at_odds(evidence, v, r)) continue;
-      at_odds += (count++ > 0 ? ", " : "") + std::to_string(v);
-    }
+    const auto views = views_at_odds(r, evidence, settings_);
+    for (const std::size_t v : views) at_odds += (at_odds.empty() ? "" : ", ") + std::to_string(v);
     const std::string text =
         "what view " + at_odds +
         " shows is not where its joints put the robot, seen from where the other views see "
         "it; was the robot still, and are the joints those of the frame?";
     const double growth = evidence.held_out_residual_m.value_or(0) / std::max(r.residual_rms_m, 1e-4);
-    if (share(count, evidence.views.size()) > settings_.max_views_at_odds ||
-        (count > 0 && growth > settings_.doubtful_held_out_growth))
+    if (share(views.size(), evidence.views.size()) > settings_.max_views_at_odds ||
+        (!views.empty() && growth > settings_.doubtful_held_out_growth))
       reject("views_disagree", text);
-    else if (count > 0)
+    else if (!views.empty())
       doubt("view_disagrees", text);
     if (!evidence.held_out_residual_m) return;
     const std::string residual = "views judged by the pose of the other views stay " +
@@ -173,24 +184,6 @@ class Judge {
   void doubt(const char* code, std::string text) { calibrd::doubt(code, std::move(text), result_); }
 
  private:
-  bool is_at_odds(const Evidence& evidence, std::size_t v, const Refinement& r) const {
-    const SurfaceTally& tally = evidence.views[v];
-    return evidence.joint_pull_m[v] > std::max(settings_.max_joint_pull_m, r.residual_rms_m) ||
-           share(tally.seen_through, tally.measured) > settings_.max_view_seen_through ||
-           found_or_hidden(tally) < settings_.min_view_found * usually_found(evidence);
-  }
-  static double found_or_hidden(const SurfaceTally& tally) {
-    return share(tally.agreeing + tally.occluded, tally.predicted);
-  }
-  /// Where nothing stands behind the robot it cannot be seen through: then it is only missing.
-  static double usually_found(const Evidence& evidence) {
-    std::vector<double> shares;
-    for (const SurfaceTally& tally : evidence.views) shares.push_back(found_or_hidden(tally));
-    const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-    std::nth_element(shares.begin(), middle, shares.end());
-    return *middle;
-  }
-
   const VerdictSettings& settings_;
   CalibrationResult& result_;
 };
@@ -223,6 +216,19 @@ void withhold_pose(CalibrationResult& result) {
   result.sigma_position_m = nothing_known.sigma_position_m;
   result.sigma_rotation_rad = nothing_known.sigma_rotation_rad;
   result.weak_directions.clear();
+}
+
+std::vector<std::size_t> views_at_odds(const Refinement& r, const Evidence& evidence,
+                                       const VerdictSettings& settings) {
+  std::vector<std::size_t> views;
+  for (std::size_t v = 0; v < evidence.views.size(); ++v) {
+    const SurfaceTally& tally = evidence.views[v];
+    if (evidence.joint_pull_m[v] > std::max(settings.max_joint_pull_m, r.residual_rms_m) ||
+        share(tally.seen_through, tally.measured) > settings.max_view_seen_through ||
+        found_or_hidden(tally) < settings.min_view_found * usually_found(evidence))
+      views.push_back(v);
+  }
+  return views;
 }
 
 void describe_evidence(const RobotModel& robot, const Evidence& evidence, CalibrationResult& result) {

@@ -47,6 +47,10 @@ struct VerdictSettings {
 void judge(const Refinement& refinement, const Evidence& evidence, const VerdictSettings& settings,
            CalibrationResult& result);
 
+/// The views in which the robot is not where their joints put it.
+std::vector<std::size_t> views_at_odds(const Refinement& refinement, const Evidence& evidence,
+                                       const VerdictSettings& settings);
+
 /// Fills what the evidence says of links and held-out views.
 void describe_evidence(const RobotModel& robot, const Evidence& evidence, CalibrationResult& result);
 

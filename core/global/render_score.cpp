@@ -13,7 +13,6 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
-/// The camera of every `reduction`-th pixel: pixel (x, y) of it sees along pixel (x, y) * reduction.
 RenderScore score_of(const RegistrationView& view, const std::vector<std::uint8_t>* moving,
                      const CameraModel& camera, const Pose& T_base_sensor,
                      const RenderScoreSettings& settings) {

@@ -4,7 +4,7 @@
 
 namespace calibrd {
 
-/// Half a pixel of lateral uncertainty, about what Nguyen 2012 and Fankhauser 2015 measured: where nothing
+/// Lateral uncertainty (px), about what Nguyen 2012 and Fankhauser 2015 measured: where nothing
 /// better is known.
 constexpr double kUsualLateral_px = 0.4;
 

@@ -7,10 +7,11 @@
 namespace calibrd {
 namespace {
 
-// This sum takes most of a registration's time: it is worth a copy for processors with wider registers.
+// This sum takes most of a registration's time: it is worth a copy for processors with wider registers. Their
+// fused multiply-add rounds once less: the last bits of a result depend on the processor.
 // Sanitizers cannot start programs that choose between copies.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define CALIBRD_WIDE_REGISTERS __attribute__((target_clones("arch=haswell", "default")))
 #else
 #define CALIBRD_WIDE_REGISTERS

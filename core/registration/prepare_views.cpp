@@ -69,6 +69,7 @@ double difference_noise(const std::vector<float>& image) {
   constexpr std::size_t kStride = 23;
   steps.reserve(image.size() / kStride + 1);
   for (std::size_t i = 1; i < image.size(); i += kStride) steps.push_back(std::abs(image[i] - image[i - 1]));
+  if (steps.empty()) return 0.1;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return std::max(1.4826 * static_cast<double>(*middle), 0.1);

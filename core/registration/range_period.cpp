@@ -84,8 +84,9 @@ std::optional<PeriodicTerm> find_period(std::span<const Sample> samples, double 
   const auto best = std::ranges::max_element(fits, {}, &Fit::gain);
   // Of noise alone some candidate makes the cost fall, too: what is left of the amplitude without that is how
   // large it may be thought to be (James & Stein 1961).
-  const double left = 1 - kFallByChance / (best->gain - solved(without).gain);
-  if (!(left > 0)) return std::nullopt;
+  const double fall = best->gain - solved(without).gain;
+  if (!(fall > kFallByChance)) return std::nullopt;
+  const double left = 1 - kFallByChance / fall;
   const Eigen::Vector2d amplitude = best->solution.segment<2>(kSine);
   return PeriodicTerm{kCandidates_m[best - fits.begin()], amplitude[0], amplitude[1],
                       amplitude.norm() * std::sqrt(0.5 * left)};

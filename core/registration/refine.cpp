@@ -5,8 +5,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/registration/covariance.hpp"
+#include "core/registration/priors.hpp"
 #include "core/registration/range_period.hpp"
 #include "core/registration/repeated_postures.hpp"
 #include "core/registration/reported_joints.hpp"
@@ -120,7 +122,7 @@ class Refiner {
   }
 
   /// How far from the rendering range alone would have the parameters.
-  ParameterVector range_alone(const Stage& stage, const ViewSums& sums) const {
+  ParameterVector range_alone(const Stage& stage, const ViewSums& sums) {
     const double scale = robust_sigma(sums.range_tally.whitened);
     ParameterVector gradient;
     const ParameterMatrix information =
@@ -128,34 +130,17 @@ class Refiner {
     return information.ldlt().solve(gradient);
   }
 
-  /// Everything known before the views were seen, as one observation per parameter. `delta`: how far the
-  /// parameters have moved from result_.
+  /// `delta`: how far the parameters have moved from result_.
   void add_priors(const Stage& stage, const ParameterVector& delta, ParameterMatrix& information,
-                  ParameterVector& gradient) const {
-    constexpr double kHeld = 1e-7;
-    const auto add = [&](Parameter parameter, double value, double sigma) {
-      information(parameter, parameter) += 1 / (sigma * sigma);
-      gradient[parameter] -= (value + delta[parameter]) / (sigma * sigma);
-    };
-    const DepthCorrection& c = result_.correction;
-    const bool periodic = c.periodic_period_m > 0;
-    add(kOffset, c.offset_m, stage.free_bias ? settings_.offset_prior_m : kHeld);
-    add(kScale, c.scale - 1, stage.free_bias ? settings_.scale_prior : kHeld);
-    add(kSine, c.periodic_sin_m, periodic_prior_m_);
-    add(kCosine, c.periodic_cos_m, periodic_prior_m_);
-    add(kPeriod, periodic ? c.periodic_period_m - period_start_m_ : 0,
-        periodic ? settings_.period_prior * period_start_m_ : 1);
-    add(kImageShift, result_.image_shift_px, settings_.image_shift_prior_px);
-    add(kDepthShift, result_.depth_shift_px, settings_.depth_shift_prior_px);
-    const double zero_sigma = stage.free_zeros ? settings_.joint_zero_prior : kHeld;
-    for (int j = 0; j < kMaxJointZeros; ++j)
-      add(static_cast<Parameter>(kJointZeros + j), result_.joint_zeros[j], zero_sigma);
-    // A faint hold keeps the solution finite in directions that nothing pins.
-    information.diagonal().head<6>().array() += 1e-9 * information.diagonal().head<6>().maxCoeff();
+                  ParameterVector& gradient) {
+    freedom_.bias = stage.free_bias;
+    freedom_.zeros = stage.free_zeros;
+    add_prior(from_expected(result_, freedom_) + delta, prior_sigmas(settings_, freedom_), information,
+              gradient);
   }
 
   ParameterMatrix with_priors(const NormalEquations& all, const Stage& stage, const ParameterVector& delta,
-                              ParameterVector& gradient) const {
+                              ParameterVector& gradient) {
     ParameterMatrix information = all.information().selfadjointView<Eigen::Lower>();
     gradient = all.gradient();
     add_priors(stage, delta, information, gradient);
@@ -173,10 +158,10 @@ class Refiner {
     const double each_for = static_cast<double>(latest_.range_count()) /
                             static_cast<double>(std::max<std::size_t>(1, samples.size()));
     if (const auto term = find_period(samples, each_for * noise_.range_weight(sums), information, gradient)) {
-      result_.correction.periodic_period_m = period_start_m_ = term->period_m;
+      result_.correction.periodic_period_m = freedom_.period_m = term->period_m;
       result_.correction.periodic_sin_m = term->sin_m;
       result_.correction.periodic_cos_m = term->cos_m;
-      periodic_prior_m_ = std::min(term->prior_m, settings_.periodic_prior_m);
+      freedom_.periodic_m = std::min(term->prior_m, settings_.periodic_prior_m);
     }
   }
 
@@ -191,7 +176,7 @@ class Refiner {
         found = noise_.found_in(latest_, sums, range_alone(stage, sums));
       if (step == 0) found.note_edges(sums);
       const NormalEquations all = found.weighed(sums);
-      if (all.count() < 50) return;
+      if (all.count() < 50) return lose_hold();
       ParameterVector gradient;
       last_information_ = with_priors(all, stage, delta, gradient);
       full_step = last_information_.ldlt().solve(gradient);
@@ -203,6 +188,12 @@ class Refiner {
     // Image edges and pixels change sides between renderings; halved moves settle that jitter.
     latest_delta_ = (rendering < kFullMoves ? 1.0 : 0.5) * delta;
     apply(latest_delta_, stage.free_zeros);
+  }
+
+  /// Too little is seen to say anything.
+  void lose_hold() {
+    latest_delta_.setZero();
+    result_.last_step_sigmas = last_move_ = std::numeric_limits<double>::infinity();
   }
 
   void apply(const ParameterVector& delta, bool zeros_too) {
@@ -237,12 +228,13 @@ class Refiner {
     for (const Vector6d& move : moves_) mean += move / static_cast<double>(moves_.size());
     const ParameterMatrix covariance = last_information_.ldlt().solve(ParameterMatrix::Identity());
     const Eigen::LDLT<Matrix6d> of_pose(covariance.topLeftCorner<6, 6>());
-    const Vector6d& judged = shift_px(pose_move) < kSamePlace_px ? last_step : pose_move;
-    last_move_ = std::sqrt(judged.dot(of_pose.solve(judged)) / 6);
-    result_.last_step_sigmas = std::min(last_move_, std::sqrt(mean.dot(of_pose.solve(mean)) / 6));
+    const auto sigmas = [&](const Vector6d& move) { return std::sqrt(move.dot(of_pose.solve(move)) / 6); };
+    last_move_ = sigmas(pose_move);
+    if (last_move_ < 1 && shift_px(pose_move) < kSamePlace_px) last_move_ = sigmas(last_step);
+    result_.last_step_sigmas = std::min(last_move_, sigmas(mean));
   }
 
-  /// At most so far (px) a move shifts what the sensor sees of the robot.
+  /// About so far (px) a move shifts what the sensor sees of the robot.
   double shift_px(const Vector6d& pose_move) const {
     return camera_.fx * (pose_move.head<3>().norm() + pose_move.tail<3>().norm() / latest_.nearest_m());
   }
@@ -251,6 +243,7 @@ class Refiner {
     ViewSums sums = latest_.sums(latest_delta_);
     const NormalEquations all = noise_.weighed(sums);
     result_.sigma_factor = noise_.sigma_factor;
+    result_.lateral_px = noise_.lateral_px;
     result_.range_correlation = noise_.range_correlation;
     ParameterVector gradient;
     const ParameterMatrix information = with_priors(all, stage, ParameterVector::Zero(), gradient);
@@ -284,7 +277,7 @@ class Refiner {
   ParameterVector latest_delta_ = ParameterVector::Zero();  // moved since
   std::vector<Vector6d> moves_;                             // of the stage
   ParameterMatrix last_information_ = ParameterMatrix::Zero();
-  double period_start_m_ = 0, periodic_prior_m_ = settings_.periodic_prior_m;
+  Freedom freedom_;
   SensorNoise noise_;
   double last_move_ = 0;  // of the pose, in its own standard deviations
 };

@@ -37,9 +37,10 @@ struct Refinement {
   /// Edges lie this far (px) outside the predicted contours, in the image and in the depth.
   double image_shift_px = 0, depth_shift_px = 0;
   Matrix6d covariance = Matrix6d::Zero();  ///< of perturbed()'s δ, correlation of errors included
-  double last_step_sigmas = 0;   ///< drift of the pose over the last moves, in its own standard deviations
-  double residual_rms_m = 0;     ///< of the range residuals that agree
-  double sigma_factor = 1;       ///< noise found over noise expected
+  double last_step_sigmas = 0;  ///< drift of the pose over the last moves, in its own standard deviations
+  double residual_rms_m = 0;    ///< of the range residuals that agree
+  double sigma_factor = 1;      ///< noise found over noise expected
+  double lateral_px = kUsualLateral_px;  ///< lateral noise found
   double range_correlation = 1;  ///< times that range errors are less independent than their number says
   RangeTally range;
   ContourTally contour;        ///< of the image
