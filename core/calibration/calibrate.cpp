@@ -184,6 +184,10 @@ class Calibration {
                           {"one_view",
                            "one view without a guess is little to search in; add a posture "
                            "between which the robot moves in view, or give a guess"});
+    // How well the pose is known were it the right one says nothing of how well it is known.
+    best.covariance = CalibrationResult{}.covariance;
+    best.sigma_position_m = CalibrationResult{}.sigma_position_m;
+    best.sigma_rotation_rad = CalibrationResult{}.sigma_rotation_rad;
     for (const StartHypothesis& start : starts)
       best.hypotheses.push_back({start.T_base_sensor, start.score.value()});
     return best;

@@ -69,10 +69,11 @@ struct Hypothesis {
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
-  PaperSettings paper;                      ///< of Method::paper alone
-  bool depth_only = false;                  ///< leave the images of the views aside
-  std::vector<WorkspacePoint> workspace;    ///< where the result is to tell its predicted error
-  std::function<void(double)> on_progress;  ///< called with 0..1 from the calling thread
+  PaperSettings paper;                    ///< of Method::paper alone
+  bool depth_only = false;                ///< leave the images of the views aside
+  std::vector<WorkspacePoint> workspace;  ///< where the result is to tell its predicted error
+  std::function<void(double)>
+      on_progress;  ///< called with 0..1 from the calling thread; begins anew with a search
   const std::atomic<bool>* cancelled =
       nullptr;  ///< polled; when true, calibrate returns early as rejected/"cancelled"
 };
@@ -95,7 +96,8 @@ struct CalibrationResult {
   /// Median |residual| (m) of views judged by the pose that the other views give; nothing below 4 views.
   std::optional<double> held_out_residual_m;
   /// Of the start search without a guess, -1..1: how much better the best hypothesis explains the views than
-  /// the next one that differs; nothing with a guess, or when there was only one.
+  /// the next one that differs; nothing where the pose came from a guess or from a further hypothesis, or
+  /// when there was only one.
   std::optional<double> runner_up_margin;
   std::vector<Hypothesis> hypotheses;  ///< of one view without a guess: where the search ended, best first
   std::vector<WeakDirection> weak_directions;  ///< worst first; empty when all are held

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace calibrd {
@@ -52,6 +53,7 @@ void Linearization::observe(std::span<const RegistrationView> views,
   settings_.range.prediction_step = settings.stride;
   settings_.range.stride = 1;
   const CameraModel sparse = camera.subsampled(settings.stride);
+  assert(kBandRows % settings.stride == 0);
   const int rows = kBandRows / settings.stride;
   const auto bands_per_view = static_cast<std::size_t>((sparse.height + rows - 1) / rows);
   bands_.resize(views.size() * bands_per_view);

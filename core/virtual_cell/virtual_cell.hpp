@@ -35,7 +35,8 @@ struct SurfaceHit {
 };
 
 /// The robot placed at joint positions, measured by a virtual sensor from any pose (Embree ray casting).
-/// One thread at a time; `robot` must outlive it.
+/// hit_along() may be called from any number of threads, measure() and set_joints() from one at a time.
+/// `robot` must outlive it.
 class VirtualCell {
  public:
   explicit VirtualCell(const RobotModel& robot);

@@ -181,6 +181,25 @@ INSTANTIATE_TEST_SUITE_P(, WrongInput,
                                                  "joints_not_of_frame"}),
                          [](const auto& test) { return test.param.name; });
 
+/// Five views, in some of which the robot stood elsewhere than its joints say.
+CalibrationResult with_moved_views(std::initializer_list<std::size_t> moved) {
+  const bench::Scene& scene = good_scene();
+  Trial trial{{scene.views.begin(), scene.views.begin() + kViews + 1}, scene.camera, &robots().arm7.model};
+  for (const std::size_t v : moved)
+    for (const std::size_t joint : {1U, 3U}) trial.views[v].joint_positions_rad[joint] += 0.05;
+  return calibrated(trial);
+}
+
+TEST(MovedView, IsLeftOutWhereEnoughOthersAgree) {
+  const CalibrationResult result = with_moved_views({2});
+  ASSERT_EQ(result.verdict, Verdict::accepted) << codes_of(result);
+  EXPECT_NE(codes_of(result).find("view_left_out"), std::string::npos) << codes_of(result);
+  EXPECT_EQ(result.views, static_cast<int>(kViews));
+  EXPECT_LT(difference(good_scene().truth.T_base_sensor, *result.T_base_sensor).tail<3>().norm(), 2e-3);
+}
+
+TEST(MovedView, OfTwoInFiveNoneIsLeftOut) { EXPECT_NE(with_moved_views({1, 3}).verdict, Verdict::accepted); }
+
 TEST(WrongGuess, IsGivenUpForASearch) {
   const Trial trial = good_trial();
   CalibrationSettings settings;
@@ -201,6 +220,7 @@ TEST(OnePosture, WithoutAGuessIsNeverAcceptedAndListsWhereTheSensorMightBe) {
   EXPECT_NE(result.verdict, Verdict::accepted);
   EXPECT_NE(codes_of(result).find("one_view"), std::string::npos) << codes_of(result);
   EXPECT_FALSE(result.hypotheses.empty());
+  EXPECT_GT(result.sigma_position_m, 1);  // claims nothing
 }
 
 }  // namespace

@@ -38,5 +38,22 @@ TEST(CameraModel, JacobianMatchesFiniteDifferences) {
   }
 }
 
+TEST(CameraModel, EveryNthPixelSeesWhatItSawBefore) {
+  CameraModel camera;
+  camera.width = 321;
+  camera.height = 241;
+  camera.fx = 300;
+  camera.fy = 290;
+  camera.cx = 158.3;
+  camera.cy = 121.7;
+  camera.distortion = {0.08, -0.2, 0.001, -0.0005, 0.05};
+  for (const int step : {2, 3, 4}) {
+    const CameraModel sparse = camera.subsampled(step);
+    EXPECT_EQ((sparse.width - 1) * step, (camera.width - 1) / step * step);
+    for (const auto& [x, y] : {std::pair{0, 0}, {sparse.width - 1, sparse.height - 1}, {7, 31}})
+      EXPECT_TRUE(sparse.ray(x, y).isApprox(camera.ray(x * step, y * step), 1e-9)) << step;
+  }
+}
+
 }  // namespace
 }  // namespace calibrd
