@@ -165,8 +165,8 @@ def print_bound(lines):
     print("\nCramer-Rao bound from depths of the robot's surface away from edges, root mean square over the scenes, by\n"
           "differences of rendered depths and the simulator's own noise, whole mm included. Known: the range is known to\n"
           "be right. Free: its offset (prior 20 mm) and scale (prior 0.5 %) are found beside the pose. All poses count,\n"
-          "accepted or not. calibrate() finds joint zeros and a periodic range term too, which neither bound has; the\n"
-          "outline in the depth, which says more than either bound knows, it does not use.")
+          "accepted or not. calibrate() finds joint zeros and a periodic range term too, which neither bound has; and it\n"
+          "uses the outline in the depth, of which neither bound knows: a ratio may fall below 1.")
 
 
 def main(arguments):

@@ -11,6 +11,7 @@
 #include "core/calibration/diagnose.hpp"
 #include "core/calibration/evidence.hpp"
 #include "core/calibration/observability.hpp"
+#include "core/calibration/usable_views.hpp"
 #include "core/calibration/verdict.hpp"
 #include "core/paper/calibrate_by_paper.hpp"
 #include "core/registration/coarse_align.hpp"
@@ -18,31 +19,6 @@
 
 namespace calibrd {
 namespace {
-
-std::optional<Reason> unusable(const RobotModel& robot, const CameraModel& camera,
-                               std::span<const View> views) {
-  if (views.empty())
-    return Reason{"no_views", "there is no view to calibrate from; record at least one posture"};
-  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const View& view = views[i];
-    const std::string name = "view " + std::to_string(i);
-    if (view.depth.width != camera.width || view.depth.height != camera.height ||
-        view.depth.raw.size() != pixels)
-      return Reason{"wrong_image_size", name + ": the depth image has not the size of the camera model"};
-    if (view.image && (view.image->width != camera.width || view.image->height != camera.height ||
-                       view.image->pixels.size() != pixels))
-      return Reason{"wrong_image_size", name + ": the image has not the size of the camera model"};
-    if (view.joint_positions_rad.size() != robot.position_count())
-      return Reason{"wrong_joint_count", name + ": the robot model needs " +
-                                             std::to_string(robot.position_count()) + " joint positions"};
-    if (!std::ranges::all_of(view.joint_positions_rad, [](double q) { return std::isfinite(q); }))
-      return Reason{"joint_not_finite", name + ": a joint position is not a finite number"};
-    if (std::ranges::all_of(view.depth.raw, [](std::uint16_t raw) { return raw == 0; }))
-      return Reason{"empty_frame", name + ": the depth image holds no measurement; is the sensor covered?"};
-  }
-  return std::nullopt;
-}
 
 double ms_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -273,6 +249,14 @@ class Calibration {
 
 CalibrationResult calibrate(const VirtualCell& cell, const CameraModel& camera, std::span<const View> views,
                             const CalibrationSettings& settings) {
+  if (const std::vector<View> seen = without_empty(views); !seen.empty()) {
+    CalibrationResult result = calibrate(cell, camera, seen, settings);
+    result.reasons.push_back(
+        {"empty_frame", std::to_string(views.size() - seen.size()) +
+                            " of the depth images hold no measurement and were left out; "
+                            "was the sensor covered?"});
+    return result;
+  }
   const RobotModel& robot = cell.robot();
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = unusable(robot, camera, views)) return rejected(*std::move(reason), views.size());

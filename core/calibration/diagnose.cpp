@@ -82,6 +82,7 @@ double best_score(const Input& input, std::span<const PixelMask> moving, std::ve
 std::vector<Pose> searched(const Input& input, bool thoroughly) {
   if (input.views.size() < 2) return {};
   StartSettings settings;
+  settings.hopeless = -1;
   settings.convincing = -1;  // most explanations are wrong: no second look at what fits badly
   if (!thoroughly) {
     settings.rotations = 100;

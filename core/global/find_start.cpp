@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 #include <optional>
 
 #include "core/global/field_fit.hpp"
@@ -20,7 +21,8 @@ namespace {
 
 constexpr double kFarthestRobot_m = 4;        // in a single view, of which no part is known to have moved
 constexpr std::size_t kMostPlacesOfOne = 10;  // in a single view the robot may be any part of the scene
-constexpr std::size_t kMinPoints = 8;         // per view: fewer say nothing of a shape
+constexpr std::size_t kPolished = 6, kPolishedHarder = 60;
+constexpr std::size_t kMinPoints = 8;  // per view: fewer say nothing of a shape
 
 /// What the views that show enough motion say, ready for fitting.
 struct Evidence {
@@ -110,9 +112,8 @@ Place agreed_place(const std::vector<std::vector<Eigen::Vector3f>>& places, cons
 
 /// Where a sensor of that orientation may stand so that in most postures a group of moving points lies where
 /// the robot is. What else moves (people) agrees on no place.
-std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& evidence,
-                         const Groups& groups) {
-  const std::size_t most_places = groups.size() == 1 ? kMostPlacesOfOne : 2;
+std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& evidence, const Groups& groups,
+                         std::size_t most_places) {
   constexpr float kSame_m = 0.3F;
   const Eigen::Matrix3f R = R_base_sensor.cast<float>();
   std::vector<std::vector<Eigen::Vector3f>> places(groups.size());
@@ -165,11 +166,12 @@ std::vector<FieldFit> fit_all(const Evidence& evidence, std::vector<FieldFit> fi
   return fits;
 }
 
-std::vector<FieldFit> first_guesses(const Evidence& evidence, std::size_t rotations) {
+std::vector<FieldFit> first_guesses(const Evidence& evidence, const StartSettings& settings) {
   const Groups groups = groups_of(evidence.postures);
+  const std::size_t places = groups.size() == 1 ? kMostPlacesOfOne : settings.places;
   std::vector<FieldFit> guesses;
-  for (const Eigen::Matrix3d& R : even_rotations(rotations))
-    for (const Pose& pose : placed(R, evidence, groups)) guesses.push_back({pose, 1});
+  for (const Eigen::Matrix3d& R : even_rotations(settings.rotations))
+    for (const Pose& pose : placed(R, evidence, groups, places)) guesses.push_back({pose, 1});
   return guesses;
 }
 
@@ -179,8 +181,8 @@ std::size_t stride_for(const Evidence& evidence, std::size_t wanted) {
   return std::max<std::size_t>(1, points / wanted);
 }
 
-std::vector<FieldFit> quick_fits(const Evidence& evidence, std::size_t rotations) {
-  return fit_all(evidence, first_guesses(evidence, rotations), {0.3, 0.1, 8, stride_for(evidence, 150)});
+std::vector<FieldFit> quick_fits(const Evidence& evidence, const StartSettings& settings) {
+  return fit_all(evidence, first_guesses(evidence, settings), {0.3, 0.1, 8, stride_for(evidence, 150)});
 }
 
 std::vector<StartHypothesis> ranked(std::span<const RegistrationView> views, const CameraModel& camera,
@@ -213,17 +215,33 @@ std::vector<StartHypothesis> judged(std::span<const RegistrationView> views, con
 /// The best few pulled onto the measured surface, and judged again. Fits to moving points that are half a
 /// person stop short of it.
 std::vector<StartHypothesis> polished(std::span<const RegistrationView> views, const CameraModel& camera,
-                                      const Evidence& evidence, std::vector<StartHypothesis> starts) {
-  constexpr std::size_t kPolished = 6;
+                                      const Evidence& evidence, std::vector<StartHypothesis> starts,
+                                      std::size_t count) {
   CoarseSettings settings;
   settings.iterations = 12;
   settings.reduction = 8;
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const Pose& pose = starts[i].T_base_sensor;
-    poses.push_back(i < kPolished ? coarse_align(views, camera, pose, settings) : pose);
+    poses.push_back(i < count ? coarse_align(views, camera, pose, settings) : pose);
   }
   return ranked(views, camera, evidence, poses);
+}
+
+/// The evidence of those postures in which least moved: where more did, people walked by.
+Evidence calmest(const Evidence& evidence) {
+  constexpr std::size_t kLeast = 4;
+  std::vector<std::size_t> order(evidence.postures.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&](std::size_t p) { return evidence.postures[p].points_sensor.size(); });
+  order.resize(std::min(order.size(), std::max(kLeast, order.size() / 2)));
+  Evidence calm{evidence.moving, evidence.masks, evidence.surfaces, {}, {}, {}};
+  for (const std::size_t p : order) {
+    calm.postures.push_back(evidence.postures[p]);
+    calm.view_of.push_back(evidence.view_of[p]);
+  }
+  return calm;
 }
 
 }  // namespace
@@ -232,12 +250,20 @@ std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views
                                          const StartSettings& settings) {
   const Evidence evidence = gather(views, camera, settings);
   if (evidence.postures.empty()) return {};
-  const std::vector<FieldFit> fits = quick_fits(evidence, settings.rotations);
+  const std::vector<FieldFit> fits = quick_fits(evidence, settings);
   std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
   if (starts.empty()) return starts;  // what moves forms no group
   // People who walk by can hide the truth among fits that explain them better: then all are looked at.
   if (starts.front().score.value() < settings.convincing)
-    starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()));
+    starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()), kPolished);
+  if (starts.front().score.value() < settings.hopeless && views.size() > 1) {
+    StartSettings harder = settings;
+    harder.rotations *= 3;
+    harder.places *= 2;
+    const Evidence calm = calmest(evidence);
+    const std::vector<FieldFit> more = quick_fits(calm, harder);
+    starts = polished(views, camera, calm, judged(views, camera, calm, more, more.size()), kPolishedHarder);
+  }
   return starts;
 }
 

@@ -14,7 +14,11 @@ struct StartSettings {
   std::size_t surface_points = 4000;  ///< of the robot's moving links, per view
   double voxel_m = 0.04;              ///< of the distance fields
   std::size_t kept_fits =
-      60;                   ///< hypotheses after the first, quick fit; half of them are judged by rendering
+      60;                  ///< hypotheses after the first, quick fit; half of them are judged by rendering
+  std::size_t places = 2;  ///< tried per orientation
+  /// A score below this is taken for a search that found nothing: orientations and places are tried once
+  /// more, several times as many.
+  double hopeless = 0.3;
   double convincing = 0.7;  ///< a score below this is not taken before every hypothesis was judged
 };
 

@@ -35,7 +35,8 @@ constexpr double kSettled = 0.1;  // sigmas: a step so small is the last on one 
 constexpr int kContourStride = 2, kFineContourStride = 3;
 constexpr double kSamePlace_px = 0.1;
 constexpr std::size_t kPeriodSamples = 6000;  // the cost has a wide minimum over periods
-constexpr int kFullMoves = 3;
+constexpr int kFullMoves = 3, kMoreMoves = 4;
+constexpr double kUnsettled = 0.8;  // sigmas
 /// Chance lets the cost fall by as much through seven joint zeros once in twenty times. Zeros of a robot that
 /// has none would only carry noise into the pose.
 constexpr double kSignificantFall = 14;
@@ -74,6 +75,7 @@ class Refiner {
       set_zeros(JointZeros::Zero());
     }
     run_stage(last);
+    for (int i = 0; i < kMoreMoves && result_.last_step_sigmas > kUnsettled; ++i) move(last, kFullMoves);
     finish(judged);
     return result_;
   }

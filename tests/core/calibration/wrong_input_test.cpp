@@ -198,6 +198,15 @@ TEST(MovedView, IsLeftOutWhereEnoughOthersAgree) {
   EXPECT_LT(difference(good_scene().truth.T_base_sensor, *result.T_base_sensor).tail<3>().norm(), 2e-3);
 }
 
+TEST(CoveredSensor, SpoilsNoCalibrationFromEnoughOtherViews) {
+  const bench::Scene& scene = good_scene();
+  Trial trial{{scene.views.begin(), scene.views.begin() + kViews + 1}, scene.camera, &robots().arm7.model};
+  std::ranges::fill(trial.views[1].depth.raw, std::uint16_t{0});
+  const CalibrationResult result = calibrated(trial);
+  EXPECT_EQ(result.verdict, Verdict::accepted) << codes_of(result);
+  EXPECT_NE(codes_of(result).find("empty_frame"), std::string::npos) << codes_of(result);
+}
+
 TEST(MovedView, OfTwoInFiveNoneIsLeftOut) { EXPECT_NE(with_moved_views({1, 3}).verdict, Verdict::accepted); }
 
 TEST(WrongGuess, IsGivenUpForASearch) {
