@@ -112,15 +112,8 @@ void add_signs(const std::vector<std::string>& names, std::vector<Alternative>& 
 
 }  // namespace
 
-std::vector<Alternative> alternatives(const std::vector<std::string>& joint_names, bool used_guess) {
+std::vector<Alternative> alternatives(const std::vector<std::string>& joint_names) {
   std::vector<Alternative> all;
-  if (used_guess) {
-    Alternative elsewhere;
-    elsewhere.reason = {
-        "guess_wrong", "the views fit from another place than the guess: correct the guess, or leave it out"};
-    elsewhere.of_sensor = true;
-    all.push_back(std::move(elsewhere));
-  }
   add_intrinsics(all);
   add_mirror(all);
   add_shifts(all);

@@ -12,7 +12,7 @@ namespace calibrd {
 /// One way in which the input may be wrong, undone.
 struct Alternative {
   Reason reason;           ///< to give when it fits
-  bool of_sensor = false;  ///< of the sensor or the guess; else of the joints
+  bool of_sensor = false;  ///< of the sensor; else of the joints
   std::function<CameraModel(const CameraModel&)> camera = [](const CameraModel& c) { return c; };
   /// The joints of view `view`, given those of all views; empty when there are none.
   std::function<std::vector<double>(const std::vector<std::vector<double>>&, std::size_t)> joints =
@@ -21,6 +21,6 @@ struct Alternative {
 };
 
 /// Everything that diagnose() tries, the likeliest first.
-std::vector<Alternative> alternatives(const std::vector<std::string>& joint_names, bool used_guess);
+std::vector<Alternative> alternatives(const std::vector<std::string>& joint_names);
 
 }  // namespace calibrd
