@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/registration/priors.hpp"
 #include "core/registration/reported_joints.hpp"
 
 namespace calibrd {
@@ -114,24 +115,18 @@ double joint_pull_m(const OneViewSums& sums) {
 }
 
 /// What was known before, about where the solution is.
-ParameterMatrix priors() {
-  ParameterVector sigma;
-  sigma.head<3>().setConstant(0.05);
-  sigma.segment<3>(3).setConstant(0.05);
-  sigma[kOffset] = 0.02;
-  sigma[kScale] = 0.005;
-  sigma[kSine] = sigma[kCosine] = 0.004;
-  sigma[kPeriod] = 0.08;
-  sigma[kImageShift] = 0.3;
-  sigma[kDepthShift] = 2;
-  sigma.tail<kMaxJointZeros>().setConstant(1e-3);
-  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+ParameterMatrix prior_information(const DepthCorrection& correction) {
+  ParameterVector sigmas =
+      prior_sigmas({}, {.bias = true, .zeros = true, .period_m = correction.periodic_period_m});
+  sigmas.head<6>().setConstant(0.05);
+  return sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
 /// One Gauss-Newton step on all views but one, from the common solution, and the residuals it leaves in the
 /// one left out.
-double held_out_residual_m(const std::vector<OneViewSums>& views, double correlation) {
-  ParameterMatrix information = priors();
+double held_out_residual_m(const std::vector<OneViewSums>& views, const Refinement& refined) {
+  const double correlation = refined.range_correlation;
+  ParameterMatrix information = prior_information(refined.correction);
   ParameterVector gradient = ParameterVector::Zero();
   for (const OneViewSums& view : views) {
     information +=
@@ -150,18 +145,6 @@ double held_out_residual_m(const std::vector<OneViewSums>& views, double correla
   }
   return median(std::move(residuals));
 }
-
-}  // namespace
-
-void SurfaceTally::merge(const SurfaceTally& other) {
-  predicted += other.predicted;
-  measured += other.measured;
-  agreeing += other.agreeing;
-  seen_through += other.seen_through;
-  occluded += other.occluded;
-}
-
-namespace {
 
 /// Mean of what the views show of the robot.
 Eigen::Vector3d middle_of(const std::vector<VirtualMeasurement>& predictions, const CameraModel& camera,
@@ -183,6 +166,14 @@ Eigen::Vector3d middle_of(const std::vector<VirtualMeasurement>& predictions, co
 }
 
 }  // namespace
+
+void SurfaceTally::merge(const SurfaceTally& other) {
+  predicted += other.predicted;
+  measured += other.measured;
+  agreeing += other.agreeing;
+  seen_through += other.seen_through;
+  occluded += other.occluded;
+}
 
 Pose pose_of_true_base(std::span<const RegistrationView> views, const CameraModel& camera,
                        const Refinement& refined) {
@@ -213,8 +204,7 @@ Evidence gather_evidence(std::span<const RegistrationView> views, const CameraMo
     }
     evidence.joint_pull_m.push_back(joint_pull_m(sums[v]));
   }
-  if (views.size() >= kLeastViewsHeldOut)
-    evidence.held_out_residual_m = held_out_residual_m(sums, refined.range_correlation);
+  if (views.size() >= kLeastViewsHeldOut) evidence.held_out_residual_m = held_out_residual_m(sums, refined);
   return evidence;
 }
 

@@ -7,8 +7,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/registration/depth_noise.hpp"
+#include "core/registration/linearization.hpp"
 
 namespace calibrd {
 namespace {
@@ -36,14 +38,6 @@ CameraModel thinned(const CameraModel& camera, int stride) {
   sparse.cx = (camera.cx - first) / stride;
   sparse.cy = (camera.cy - first) / stride;
   return sparse;
-}
-
-double robust_sigma(std::vector<float>& values) {
-  if (values.empty()) return 1;
-  for (float& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return std::max(1.4826 * static_cast<double>(*middle), 1e-3);
 }
 
 /// The tangent plane of a predicted pixel runs on to its neighbours, or the pixel is the robot's edge.
@@ -209,7 +203,7 @@ Result<TrackedPose> PoseTracker::update(const View& view, const Pose& T_base_sen
     tracked.agreeing = sums.agreeing;
     if (sums.agreeing < settings_.min_pixels)
       return fail(TrackError::too_few_pixels, std::to_string(sums.agreeing) + " agree");
-    const double scatter = robust_sigma(sums.whitened);
+    const double scatter = robust_sigma(std::move(sums.whitened));
     if (!step(sums, scatter, tracked)) return fail(TrackError::unobservable, "");
     corrected.offset_m = correction.offset_m + tracked.offset_change_m;
     weighing.sigma_factor = std::clamp(weighing.sigma_factor * scatter, 0.3, 20.0);

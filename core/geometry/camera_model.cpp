@@ -58,6 +58,17 @@ Eigen::Matrix<double, 2, 3> CameraModel::projection_jacobian(const Eigen::Vector
   return Eigen::Vector2d(fx, fy).asDiagonal() * distort_jacobian(distortion, x, y) * normalised;
 }
 
+CameraModel CameraModel::binned(int side) const {
+  CameraModel coarse = *this;
+  coarse.width /= side;
+  coarse.height /= side;
+  coarse.fx /= side;
+  coarse.fy /= side;
+  coarse.cx = (cx + 0.5) / side - 0.5;
+  coarse.cy = (cy + 0.5) / side - 0.5;
+  return coarse;
+}
+
 CameraModel CameraModel::subsampled(int step) const {
   CameraModel sparse = *this;
   sparse.width = (width + step - 1) / step;

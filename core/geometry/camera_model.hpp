@@ -15,6 +15,7 @@ struct CameraModel {
   double fx = 0, fy = 0, cx = 0, cy = 0;
   std::array<double, 5> distortion{0, 0, 0, 0, 0};
 
+  bool operator==(const CameraModel&) const = default;
   bool is_distorted() const { return distortion != std::array<double, 5>{0, 0, 0, 0, 0}; }
 
   /// Direction with z = 1 that pixel (u, v) sees (sensor frame), distortion undone.
@@ -25,6 +26,9 @@ struct CameraModel {
 
   /// Derivative of project() by the point: 2×3, pixels per metre.
   Eigen::Matrix<double, 2, 3> projection_jacobian(const Eigen::Vector3d& point_sensor) const;
+
+  /// The camera whose pixels cover `side` by `side` pixels of this one; what is left over is cut off.
+  CameraModel binned(int side) const;
 
   /// The camera that has every `step`-th pixel of this one in both directions: its pixel (x, y) sees what
   /// pixel (step x, step y) of this one sees.

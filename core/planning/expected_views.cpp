@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/registration/priors.hpp"
 #include "core/registration/range_residuals.hpp"
-#include "core/registration/refine.hpp"
 #include "core/registration/reported_joints.hpp"
 
 namespace calibrd {
@@ -21,17 +21,6 @@ constexpr double kCorrelation = 10;
 /// the sigmas that were found.
 constexpr double kLooseness = 3;
 
-CameraModel coarser(const CameraModel& camera, int reduction) {
-  CameraModel coarse = camera;
-  coarse.width /= reduction;
-  coarse.height /= reduction;
-  coarse.fx /= reduction;
-  coarse.fy /= reduction;
-  coarse.cx = (camera.cx + 0.5) / reduction - 0.5;
-  coarse.cy = (camera.cy + 0.5) / reduction - 0.5;
-  return coarse;
-}
-
 /// The coarse grid with the fine one's focal length: a pixel's noise depends on its true width.
 CameraModel with_fine_pixels(CameraModel coarse, const CameraModel& camera) {
   coarse.fx = camera.fx;
@@ -40,16 +29,8 @@ CameraModel with_fine_pixels(CameraModel coarse, const CameraModel& camera) {
 }
 
 ParameterMatrix prior_information() {
-  const RefineSettings priors;
-  ParameterVector sigmas;
-  sigmas.head<6>().setConstant(1e3);  // nothing is known of the pose
-  sigmas[kOffset] = priors.offset_prior_m;
-  sigmas[kScale] = priors.scale_prior;
-  sigmas[kSine] = sigmas[kCosine] = priors.periodic_prior_m;
-  sigmas[kPeriod] = priors.period_prior * kUsualPeriod_m;
-  sigmas[kImageShift] = priors.image_shift_prior_px;
-  sigmas[kDepthShift] = priors.depth_shift_prior_px;
-  sigmas.tail<kMaxJointZeros>().setConstant(priors.joint_zero_prior);
+  ParameterVector sigmas = prior_sigmas({}, {.bias = true, .zeros = true, .period_m = kUsualPeriod_m});
+  sigmas.head<6>().setConstant(1e3);  // nothing is known of the pose, but what is seen must be inverted
   return sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
@@ -71,7 +52,7 @@ ExpectedViews::ExpectedViews(const VirtualCell& cell, const CameraModel& camera,
     : settings_(settings),
       reduction_(std::max(1, camera.width / kCoarseWidth)),
       least_pixels_(static_cast<std::size_t>(settings.min_robot_share * camera.width * camera.height)),
-      coarse_(coarser(camera, reduction_)),
+      coarse_(camera.binned(reduction_)),
       noise_camera_(with_fine_pixels(coarse_, camera)),
       T_base_sensor_(T_base_sensor),
       predictions_(seen_postures.size() + 1),

@@ -13,17 +13,6 @@
 namespace calibrd {
 namespace {
 
-CameraModel reduced(const CameraModel& camera, int factor) {
-  CameraModel small = camera;
-  small.width = camera.width / factor;
-  small.height = camera.height / factor;
-  small.fx /= factor;
-  small.fy /= factor;
-  small.cx = (camera.cx + 0.5) / factor - 0.5;
-  small.cy = (camera.cy + 0.5) / factor - 0.5;
-  return small;
-}
-
 Eigen::AlignedBox3d bounds_in_sensor(const VirtualMeasurement& prediction, const PixelRays& rays) {
   Eigen::AlignedBox3d box;
   for (int y = 0; y < prediction.height; ++y) {
@@ -90,7 +79,7 @@ Sums pull_of(const VirtualMeasurement& prediction, const PixelRays& rays, const 
 
 Pose coarse_align(std::span<const RegistrationView> views, const CameraModel& camera, const Pose& guess,
                   const CoarseSettings& settings) {
-  const CameraModel small = reduced(camera, settings.reduction);
+  const CameraModel small = camera.binned(settings.reduction);
   const PixelRays rays(small);
   std::vector<std::optional<CloudTree>> measured(views.size());
   std::vector<VirtualMeasurement> predictions(views.size());

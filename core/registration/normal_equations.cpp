@@ -46,7 +46,6 @@ void NormalEquations::add(const Observation& o, std::size_t id) {
   add_outer_21(information_.data(), padded.data(), weight);
   gradient_ += pull;
   weight_sum_ += o.robust_weight;
-  squared_sum_ += o.robust_weight * o.residual * o.residual / (o.sigma * o.sigma);
   residual_squares_ += o.robust_weight * o.residual * o.residual;
   ++count_;
   if (id >= clusters_.size()) clusters_.resize(id + 1);
@@ -62,7 +61,6 @@ void NormalEquations::merge(const NormalEquations& other) {
   information_ += other.information_;
   gradient_ += other.gradient_;
   weight_sum_ += other.weight_sum_;
-  squared_sum_ += other.squared_sum_;
   residual_squares_ += other.residual_squares_;
   count_ += other.count_;
   clusters_.insert(clusters_.end(), other.clusters_.begin(), other.clusters_.end());
@@ -72,7 +70,6 @@ NormalEquations NormalEquations::scaled(double factor) const {
   NormalEquations result = *this;
   result.information_ *= factor;
   result.gradient_ *= factor;
-  result.squared_sum_ *= factor;
   for (Cluster& cluster : result.clusters_) cluster.gradient *= factor;
   return result;
 }

@@ -73,8 +73,6 @@ class NormalEquations {
 
   ParameterMatrix information() const;  ///< symmetric
   const ParameterVector& gradient() const { return gradient_; }
-  double weight_sum() const { return weight_sum_; }
-  double squared_sum() const { return squared_sum_; }  ///< Σ w (r/σ)²
   std::size_t count() const { return count_; }
   double rms_residual() const;  ///< of inliers, in the unit of the residuals
 
@@ -99,7 +97,7 @@ class NormalEquations {
   Eigen::Matrix<double, kPadded, kParameters> information_ =
       Eigen::Matrix<double, kPadded, kParameters>::Zero();
   ParameterVector gradient_ = ParameterVector::Zero();
-  double weight_sum_ = 0, squared_sum_ = 0, residual_squares_ = 0;
+  double weight_sum_ = 0, residual_squares_ = 0;
   std::size_t count_ = 0;
   std::vector<Cluster> clusters_;
 };

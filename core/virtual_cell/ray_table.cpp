@@ -27,11 +27,6 @@ RayTable::RayTable(const CameraModel& camera)
   }
 }
 
-bool RayTable::fits(const CameraModel& camera) const {
-  const CameraModel& own = pixel_rays_.camera();
-  return camera.width == own.width && camera.height == own.height && camera.fx == own.fx &&
-         camera.fy == own.fy && camera.cx == own.cx && camera.cy == own.cy &&
-         camera.distortion == own.distortion;
-}
+bool RayTable::fits(const CameraModel& camera) const { return camera == pixel_rays_.camera(); }
 
 }  // namespace calibrd

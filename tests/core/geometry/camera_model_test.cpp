@@ -55,5 +55,17 @@ TEST(CameraModel, EveryNthPixelSeesWhatItSawBefore) {
   }
 }
 
+TEST(CameraModel, BinnedPixelSeesWhereItsBlockHasItsMiddle) {
+  const CameraModel camera = kinect2();
+  for (const int side : {2, 4, 8}) {
+    const CameraModel binned = camera.binned(side);
+    EXPECT_EQ(binned.width, camera.width / side);
+    EXPECT_EQ(binned.height, camera.height / side);
+    const double middle = (side - 1) / 2.0;
+    for (const auto& [x, y] : {std::pair{0, 0}, {binned.width - 1, binned.height - 1}, {11, 17}})
+      EXPECT_TRUE(binned.ray(x, y).isApprox(camera.ray(x * side + middle, y * side + middle), 1e-9)) << side;
+  }
+}
+
 }  // namespace
 }  // namespace calibrd
