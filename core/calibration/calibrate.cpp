@@ -55,7 +55,7 @@ void judge_margin(const std::optional<ChosenStart>& chosen, const VerdictSetting
   result.runner_up_margin = chosen->margin;
   if (chosen->margin && *chosen->margin < settings.min_margin)
     doubt("ambiguous",
-          "a sensor at " + shown(chosen->T_base_runner_up) +
+          "a sensor at " + shown(chosen->others.front()) +
               " would explain the views almost as well; add postures that differ more, or give a guess",
           result);
 }
@@ -108,15 +108,14 @@ class Calibration {
       CalibrationResult searched = from_nothing_unexplained();
       if (searched.verdict != Verdict::rejected || is_cancelled()) return searched;
     }
-    explain(views_, camera_, {{misled, refined_.T_base_sensor}, false, has(result, "surface_differs")},
-            result);
+    explain(views_, camera_, {{misled, refined_.T_base_sensor}, has(result, "surface_differs")}, result);
     return result;
   }
 
   CalibrationResult from_nothing() {
     CalibrationResult result = from_nothing_unexplained();
     if (result.verdict == Verdict::rejected && !is_cancelled())
-      explain(views_, camera_, {{refined_.T_base_sensor}, false, has(result, "surface_differs")}, result);
+      explain(views_, camera_, {{refined_.T_base_sensor}, has(result, "surface_differs")}, result);
     return result;
   }
 

@@ -20,12 +20,13 @@ bool is_same(const Pose& a, const Pose& b) {
 }
 
 /// Best first.
-std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> views, const CameraModel& camera,
+std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> views,
+                                          std::span<const MovingPoints> moving, const CameraModel& camera,
                                           std::vector<Pose> poses) {
   CoarseSettings align;
   align.reduction = 8;
   for (Pose& pose : poses) pose = coarse_align(views, camera, pose, align);
-  const auto scores = render_scores(views, moving_masks(views, camera), camera, poses, {6, 0.025});
+  const auto scores = render_scores(views, moving, camera, poses, {6, 0.025});
   std::vector<StartHypothesis> starts;
   for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
@@ -34,16 +35,13 @@ std::vector<StartHypothesis> judged_finer(std::span<const RegistrationView> view
 
 ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
   constexpr std::size_t kMostOthers = 2;
-  ChosenStart chosen{starts.front().T_base_sensor, std::nullopt, Pose::Identity(), {}};
-  for (const StartHypothesis& start : starts)
-    if (chosen.others.size() < kMostOthers && !is_same(start.T_base_sensor, chosen.T_base_sensor))
-      chosen.others.push_back(start.T_base_sensor);
-  const auto other = std::ranges::find_if(starts, [&](const StartHypothesis& start) {
-    return !is_same(start.T_base_sensor, chosen.T_base_sensor);
-  });
-  if (other == starts.end()) return chosen;
-  chosen.margin = starts.front().score.value() - other->score.value();
-  chosen.T_base_runner_up = other->T_base_sensor;
+  ChosenStart chosen{starts.front().T_base_sensor, {}, std::nullopt};
+  for (const StartHypothesis& start : starts) {
+    if (chosen.others.size() == kMostOthers) break;
+    if (is_same(start.T_base_sensor, chosen.T_base_sensor)) continue;
+    if (!chosen.margin) chosen.margin = starts.front().score.value() - start.score.value();
+    chosen.others.push_back(start.T_base_sensor);
+  }
   return chosen;
 }
 
@@ -51,20 +49,22 @@ ChosenStart first_of(const std::vector<StartHypothesis>& starts) {
 
 std::vector<StartHypothesis> starts_of_one(const RegistrationView& view, const CameraModel& camera) {
   constexpr std::size_t kMost = 5;
-  auto starts = find_starts({&view, 1}, camera, {});
+  const std::span views(&view, 1);
+  auto starts = find_starts(views, robot_candidates(views, camera), camera, {});
   if (starts.size() > kMost) starts.resize(kMost);
   return starts;
 }
 
 std::optional<ChosenStart> choose_start(std::span<const RegistrationView> views, const CameraModel& camera) {
-  const auto starts = find_starts(views, camera, {});
+  const auto moving = robot_candidates(views, camera);
+  const auto starts = find_starts(views, moving, camera, {});
   if (starts.empty()) return std::nullopt;
   const ChosenStart chosen = first_of(starts);
   if (!chosen.margin || *chosen.margin > kClear) return chosen;
   std::vector<Pose> poses;
   for (const StartHypothesis& start : starts)
     if (poses.size() < kSeconds) poses.push_back(start.T_base_sensor);
-  return first_of(judged_finer(views, camera, std::move(poses)));
+  return first_of(judged_finer(views, moving, camera, std::move(poses)));
 }
 
 }  // namespace calibrd

@@ -13,9 +13,8 @@ namespace calibrd {
 /// Where the calibration starts without a guess, and by how much nothing else explains the views as well.
 struct ChosenStart {
   Pose T_base_sensor = Pose::Identity();
-  std::optional<double> margin;  ///< score over the best hypothesis elsewhere; nothing when there is none
-  Pose T_base_runner_up = Pose::Identity();  ///< that one; set with `margin`
-  std::vector<Pose> others;                  ///< further hypotheses, best first, two at most
+  std::vector<Pose> others;      ///< hypotheses elsewhere, best first, two at most
+  std::optional<double> margin;  ///< score over the first of them; nothing when there is none
 };
 
 /// Where the robot might be in a single view, best first, at most five: nothing moved, so anything may be it.

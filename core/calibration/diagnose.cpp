@@ -31,6 +31,7 @@ std::string degrees(double angle_rad) {
 struct Input {
   Views views;
   CameraModel camera;
+  std::vector<std::size_t> taken;  // of all views
 };
 
 void mirror(std::vector<float>& depth, const CameraModel& camera) {
@@ -56,11 +57,12 @@ Input under(const Alternative& alternative, std::span<const RegistrationView> vi
     view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
     if (alternative.mirrored) mirror(view.depth_m, camera);
     input.views.push_back(std::move(view));
+    input.taken.push_back(v);
   }
   return input;
 }
 
-std::vector<double> scores_of(const Input& input, std::span<const PixelMask> moving,
+std::vector<double> scores_of(const Input& input, std::span<const MovingPoints> moving,
                               std::span<const Pose> poses) {
   std::vector<double> values;
   for (const RenderScore& score : render_scores(input.views, moving, input.camera, poses, {6, kTolerance_m}))
@@ -69,7 +71,7 @@ std::vector<double> scores_of(const Input& input, std::span<const PixelMask> mov
 }
 
 /// How well the best of the poses explains the views once it is pulled onto them.
-double best_score(const Input& input, std::span<const PixelMask> moving, std::vector<Pose> poses) {
+double best_score(const Input& input, std::span<const MovingPoints> moving, std::vector<Pose> poses) {
   if (poses.empty() || input.views.size() < 2) return 0;
   CoarseSettings align;
   align.iterations = 12;
@@ -79,7 +81,7 @@ double best_score(const Input& input, std::span<const PixelMask> moving, std::ve
 }
 
 /// Of the joints there are many explanations: each is searched in less detail.
-std::vector<Pose> searched(const Input& input, bool thoroughly) {
+std::vector<Pose> searched(const Input& input, std::span<const MovingPoints> moving, bool thoroughly) {
   if (input.views.size() < 2) return {};
   StartSettings settings;
   settings.hopeless = -1;
@@ -91,7 +93,7 @@ std::vector<Pose> searched(const Input& input, bool thoroughly) {
     settings.kept_fits = 16;
   }
   std::vector<Pose> poses;
-  for (const StartHypothesis& start : find_starts(input.views, input.camera, settings)) {
+  for (const StartHypothesis& start : find_starts(input.views, moving, input.camera, settings)) {
     poses.push_back(start.T_base_sensor);
     if (poses.size() == 2) break;
   }
@@ -109,14 +111,14 @@ class Search {
         settings_(settings),
         deadline_(std::chrono::steady_clock::now() + settings.budget),
         as_it_came_(under({}, views, camera, settings.views)),
-        moving_(moving_masks(as_it_came_.views, camera)),
+        moving_(find_moving_points(as_it_came_.views, camera, {})),
         score_as_it_came_(best_score(as_it_came_, moving_, tried.T_base_sensor)) {
     to_beat_ = std::max({settings.least_score, score_as_it_came_ + settings.least_gain,
                          score_as_it_came_ + settings.least_mended * (1 - score_as_it_came_)});
   }
 
   std::optional<Reason> run() {
-    const auto all = alternatives(views_.front().cell.robot().position_names(), tried_.used_guess);
+    const auto all = alternatives(views_.front().cell.robot().position_names());
     for (const Alternative& alternative : all) try_from(tried_.T_base_sensor, alternative);
     if (!best_) {
       for (const Alternative& alternative : all)
@@ -141,10 +143,14 @@ class Search {
   void try_from(const std::vector<Pose>& poses, const Alternative& alternative) {
     if (score_ >= settings_.convincing || is_late()) return;
     const Input input = under(alternative, views_, camera_, settings_.views);
-    const bool same_pixels = input.views.size() == as_it_came_.views.size() && !alternative.mirrored;
-    const auto moving = same_pixels ? moving_ : moving_masks(input.views, input.camera);
-    consider(best_score(input, moving, poses.empty() ? searched(input, alternative.of_sensor) : poses),
-             alternative.reason);
+    const bool same_points =
+        !alternative.mirrored && input.taken == as_it_came_.taken && input.camera == as_it_came_.camera;
+    const std::vector<MovingPoints> other =
+        same_points ? std::vector<MovingPoints>{} : find_moving_points(input.views, input.camera, {});
+    const std::span<const MovingPoints> moving = same_points ? moving_ : other;
+    consider(
+        best_score(input, moving, poses.empty() ? searched(input, moving, alternative.of_sensor) : poses),
+        alternative.reason);
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline_; }
   void consider(double score, const Reason& reason) {
@@ -166,8 +172,9 @@ class Search {
             "still, check the stamps and the latency"};
   }
   bool something_moved() const {
-    return std::ranges::any_of(
-        moving_, [](const PixelMask& mask) { return std::ranges::count(mask, std::uint8_t{1}) > 1000; });
+    return std::ranges::any_of(moving_, [](const MovingPoints& moving) {
+      return std::ranges::count(moving.mask, std::uint8_t{1}) > 1000;
+    });
   }
 
   std::span<const RegistrationView> views_;
@@ -176,7 +183,7 @@ class Search {
   const DiagnoseSettings& settings_;
   std::chrono::steady_clock::time_point deadline_;
   Input as_it_came_;
-  std::vector<PixelMask> moving_;  // as it came
+  std::vector<MovingPoints> moving_;  // as it came
   double score_as_it_came_;
   double to_beat_ = 1, score_ = -1;
   std::optional<Reason> best_;

@@ -24,12 +24,11 @@ struct DiagnoseSettings {
 /// Where the search has been before it was rejected.
 struct TriedPoses {
   std::vector<Pose> T_base_sensor;  ///< a guess, what was found
-  bool used_guess = false;
-  bool surface_differs = false;  ///< the measured surface has another shape than the model's
+  bool surface_differs = false;     ///< the measured surface has another shape than the model's
 };
 
 /// Looks for what makes views fit that were rejected: a mirrored sensor, swapped intrinsics, joints in
-/// another order or with other signs, joints of another frame, a robot that moved, a wrong guess. Gives the
+/// another order or with other signs, joints of another frame, a robot that moved. Gives the
 /// explanation that fits best as a reason to add; when none does though something moved, robot_model_wrong.
 /// `views` must stand at their reported joints. Costs up to the budget and one explanation more.
 std::optional<Reason> diagnose(std::span<const RegistrationView> views, const CameraModel& camera,

@@ -19,45 +19,36 @@
 namespace calibrd {
 namespace {
 
-constexpr double kFarthestRobot_m = 4;        // in a single view, of which no part is known to have moved
 constexpr std::size_t kMostPlacesOfOne = 10;  // in a single view the robot may be any part of the scene
 constexpr std::size_t kPolished = 6, kPolishedHarder = 60;
 constexpr std::size_t kMinPoints = 8;  // per view: fewer say nothing of a shape
 
 /// What the views that show enough motion say, ready for fitting.
-struct Evidence {
-  std::vector<MovingPoints> moving;
-  std::vector<PixelMask> masks;  // of `moving`; empty when nothing can have moved
+struct Shapes {
   std::vector<PosedSurface> surfaces;
   std::vector<std::optional<DistanceField>> fields;
   std::vector<PostureEvidence> postures;
   std::vector<std::size_t> view_of;  // of each posture
 };
 
-Evidence gather(std::span<const RegistrationView> views, const CameraModel& camera,
-                const StartSettings& settings) {
-  Evidence evidence;
-  if (views.size() == 1) {
-    evidence.moving.push_back(all_points(views[0], camera, kFarthestRobot_m, {}));
-  } else {
-    evidence.moving = find_moving_points(views, camera, {});
-    for (MovingPoints& moving : evidence.moving) evidence.masks.push_back(std::move(moving.mask));
-  }
-  evidence.surfaces = sample_moving_surface(views, settings.surface_points);
-  evidence.fields.resize(views.size());
+Shapes gather(std::span<const RegistrationView> views, std::span<const MovingPoints> moving,
+              const StartSettings& settings) {
+  Shapes shapes;
+  shapes.surfaces = sample_moving_surface(views, settings.surface_points);
+  shapes.fields.resize(views.size());
   const auto is_usable = [&](std::size_t v) {
-    return evidence.moving[v].points.size() >= kMinPoints && !evidence.surfaces[v].points.empty();
+    return moving[v].points.size() >= kMinPoints && !shapes.surfaces[v].points.empty();
   };
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
     if (is_usable(v))
-      evidence.fields[v].emplace(evidence.surfaces[v].points, static_cast<float>(settings.voxel_m), 0.25F);
+      shapes.fields[v].emplace(shapes.surfaces[v].points, static_cast<float>(settings.voxel_m), 0.25F);
   });
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (!is_usable(v)) continue;
-    evidence.postures.push_back({&*evidence.fields[v], evidence.moving[v].points});
-    evidence.view_of.push_back(v);
+    shapes.postures.push_back({&*shapes.fields[v], moving[v].points});
+    shapes.view_of.push_back(v);
   }
-  return evidence;
+  return shapes;
 }
 
 /// Middle of what a far sensor that looks along `direction` (base frame) sees of a surface: facing points,
@@ -112,13 +103,13 @@ Place agreed_place(const std::vector<std::vector<Eigen::Vector3f>>& places, cons
 
 /// Where a sensor of that orientation may stand so that in most postures a group of moving points lies where
 /// the robot is. What else moves (people) agrees on no place.
-std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Evidence& evidence, const Groups& groups,
+std::vector<Pose> placed(const Eigen::Matrix3d& R_base_sensor, const Shapes& shapes, const Groups& groups,
                          std::size_t most_places) {
   constexpr float kSame_m = 0.3F;
   const Eigen::Matrix3f R = R_base_sensor.cast<float>();
   std::vector<std::vector<Eigen::Vector3f>> places(groups.size());
   for (std::size_t p = 0; p < groups.size(); ++p) {
-    const Eigen::Vector3f middle = visible_middle(evidence.surfaces[evidence.view_of[p]], R.col(2));
+    const Eigen::Vector3f middle = visible_middle(shapes.surfaces[shapes.view_of[p]], R.col(2));
     for (const PointGroup& group : groups[p]) places[p].push_back(middle - R * group.middle);
   }
   std::vector<Place> candidates;
@@ -158,36 +149,42 @@ std::vector<FieldFit> distinct_best(std::vector<FieldFit> fits, std::size_t coun
   return best;
 }
 
-std::vector<FieldFit> fit_all(const Evidence& evidence, std::vector<FieldFit> fits,
+std::vector<FieldFit> fit_all(const Shapes& shapes, std::vector<FieldFit> fits,
                               const FieldFitSettings& settings) {
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
-    fits[i] = fit_to_fields(evidence.postures, fits[i].T_base_sensor, settings);
+    fits[i] = fit_to_fields(shapes.postures, fits[i].T_base_sensor, settings);
   });
   return fits;
 }
 
-std::vector<FieldFit> first_guesses(const Evidence& evidence, const StartSettings& settings) {
-  const Groups groups = groups_of(evidence.postures);
+std::vector<FieldFit> first_guesses(const Shapes& shapes, const StartSettings& settings) {
+  const Groups groups = groups_of(shapes.postures);
   const std::size_t places = groups.size() == 1 ? kMostPlacesOfOne : settings.places;
   std::vector<FieldFit> guesses;
   for (const Eigen::Matrix3d& R : even_rotations(settings.rotations))
-    for (const Pose& pose : placed(R, evidence, groups, places)) guesses.push_back({pose, 1});
+    for (const Pose& pose : placed(R, shapes, groups, places)) guesses.push_back({pose, 1});
   return guesses;
 }
 
-std::size_t stride_for(const Evidence& evidence, std::size_t wanted) {
+std::size_t stride_for(const Shapes& shapes, std::size_t wanted) {
   std::size_t points = 0;
-  for (const PostureEvidence& posture : evidence.postures) points += posture.points_sensor.size();
+  for (const PostureEvidence& posture : shapes.postures) points += posture.points_sensor.size();
   return std::max<std::size_t>(1, points / wanted);
 }
 
-std::vector<FieldFit> quick_fits(const Evidence& evidence, const StartSettings& settings) {
-  return fit_all(evidence, first_guesses(evidence, settings), {0.3, 0.1, 8, stride_for(evidence, 150)});
+std::vector<FieldFit> quick_fits(const Shapes& shapes, const StartSettings& settings) {
+  return fit_all(shapes, first_guesses(shapes, settings), {0.3, 0.1, 8, stride_for(shapes, 150)});
 }
 
-std::vector<StartHypothesis> ranked(std::span<const RegistrationView> views, const CameraModel& camera,
-                                    const Evidence& evidence, std::span<const Pose> poses) {
-  const std::vector<RenderScore> scores = render_scores(views, evidence.masks, camera, poses, {});
+/// What poses are judged by.
+struct Scene {
+  std::span<const RegistrationView> views;
+  std::span<const MovingPoints> moving;
+  const CameraModel& camera;
+};
+
+std::vector<StartHypothesis> ranked(const Scene& scene, std::span<const Pose> poses) {
+  const std::vector<RenderScore> scores = render_scores(scene.views, scene.moving, scene.camera, poses, {});
   std::vector<StartHypothesis> starts;
   for (std::size_t i = 0; i < poses.size(); ++i) starts.push_back({poses[i], scores[i]});
   std::ranges::stable_sort(starts, std::greater<>{}, [](const auto& s) { return s.score.value(); });
@@ -201,21 +198,19 @@ std::vector<StartHypothesis> ranked(std::span<const RegistrationView> views, con
 }
 
 /// The best `count` of the fits, fitted closer, and the better half of them judged by rendering.
-std::vector<StartHypothesis> judged(std::span<const RegistrationView> views, const CameraModel& camera,
-                                    const Evidence& evidence, const std::vector<FieldFit>& fits,
-                                    std::size_t count) {
-  const FieldFitSettings close{0.12, 0.04, 10, stride_for(evidence, 600)};
-  const std::vector<FieldFit> best = distinct_best(fit_all(evidence, distinct_best(fits, count), close),
-                                                   std::max<std::size_t>(1, count / 2));
+std::vector<StartHypothesis> judged(const Scene& scene, const Shapes& shapes,
+                                    const std::vector<FieldFit>& fits, std::size_t count) {
+  const FieldFitSettings close{0.12, 0.04, 10, stride_for(shapes, 600)};
+  const std::vector<FieldFit> best =
+      distinct_best(fit_all(shapes, distinct_best(fits, count), close), std::max<std::size_t>(1, count / 2));
   std::vector<Pose> poses;
   for (const FieldFit& fit : best) poses.push_back(fit.T_base_sensor);
-  return ranked(views, camera, evidence, poses);
+  return ranked(scene, poses);
 }
 
 /// The best few pulled onto the measured surface, and judged again. Fits to moving points that are half a
 /// person stop short of it.
-std::vector<StartHypothesis> polished(std::span<const RegistrationView> views, const CameraModel& camera,
-                                      const Evidence& evidence, std::vector<StartHypothesis> starts,
+std::vector<StartHypothesis> polished(const Scene& scene, const std::vector<StartHypothesis>& starts,
                                       std::size_t count) {
   CoarseSettings settings;
   settings.iterations = 12;
@@ -223,48 +218,54 @@ std::vector<StartHypothesis> polished(std::span<const RegistrationView> views, c
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const Pose& pose = starts[i].T_base_sensor;
-    poses.push_back(i < count ? coarse_align(views, camera, pose, settings) : pose);
+    poses.push_back(i < count ? coarse_align(scene.views, scene.camera, pose, settings) : pose);
   }
-  return ranked(views, camera, evidence, poses);
+  return ranked(scene, poses);
 }
 
-/// The evidence of those postures in which least moved: where more did, people walked by.
-Evidence calmest(const Evidence& evidence) {
+/// Keeps those postures in which least moved: where more did, people walked by.
+void keep_calmest(Shapes& shapes) {
   constexpr std::size_t kLeast = 4;
-  std::vector<std::size_t> order(evidence.postures.size());
+  std::vector<std::size_t> order(shapes.postures.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {},
-                           [&](std::size_t p) { return evidence.postures[p].points_sensor.size(); });
+  std::ranges::stable_sort(order, {}, [&](std::size_t p) { return shapes.postures[p].points_sensor.size(); });
   order.resize(std::min(order.size(), std::max(kLeast, order.size() / 2)));
-  Evidence calm{evidence.moving, evidence.masks, evidence.surfaces, {}, {}, {}};
+  std::vector<PostureEvidence> postures;
+  std::vector<std::size_t> view_of;
   for (const std::size_t p : order) {
-    calm.postures.push_back(evidence.postures[p]);
-    calm.view_of.push_back(evidence.view_of[p]);
+    postures.push_back(shapes.postures[p]);
+    view_of.push_back(shapes.view_of[p]);
   }
-  return calm;
+  shapes.postures = std::move(postures);
+  shapes.view_of = std::move(view_of);
+}
+
+bool is_better(const std::vector<StartHypothesis>& starts, const std::vector<StartHypothesis>& than) {
+  return !starts.empty() && starts.front().score.value() > than.front().score.value();
 }
 
 }  // namespace
 
-std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views, const CameraModel& camera,
+std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views,
+                                         std::span<const MovingPoints> moving, const CameraModel& camera,
                                          const StartSettings& settings) {
-  const Evidence evidence = gather(views, camera, settings);
-  if (evidence.postures.empty()) return {};
-  const std::vector<FieldFit> fits = quick_fits(evidence, settings);
-  std::vector<StartHypothesis> starts = judged(views, camera, evidence, fits, settings.kept_fits);
+  const Scene scene{views, moving, camera};
+  Shapes shapes = gather(views, moving, settings);
+  if (shapes.postures.empty()) return {};
+  const std::vector<FieldFit> fits = quick_fits(shapes, settings);
+  std::vector<StartHypothesis> starts = judged(scene, shapes, fits, settings.kept_fits);
   if (starts.empty()) return starts;  // what moves forms no group
   // People who walk by can hide the truth among fits that explain them better: then all are looked at.
   if (starts.front().score.value() < settings.convincing)
-    starts = polished(views, camera, evidence, judged(views, camera, evidence, fits, fits.size()), kPolished);
-  if (starts.front().score.value() < settings.hopeless && views.size() > 1) {
-    StartSettings harder = settings;
-    harder.rotations *= 3;
-    harder.places *= 2;
-    const Evidence calm = calmest(evidence);
-    const std::vector<FieldFit> more = quick_fits(calm, harder);
-    starts = polished(views, camera, calm, judged(views, camera, calm, more, more.size()), kPolishedHarder);
-  }
-  return starts;
+    starts = polished(scene, judged(scene, shapes, fits, fits.size()), kPolished);
+  if (starts.front().score.value() >= settings.hopeless || views.size() == 1) return starts;
+  StartSettings harder = settings;
+  harder.rotations *= 3;
+  harder.places *= 2;
+  keep_calmest(shapes);
+  const std::vector<FieldFit> more = quick_fits(shapes, harder);
+  auto found = polished(scene, judged(scene, shapes, more, more.size()), kPolishedHarder);
+  return is_better(found, starts) ? found : starts;
 }
 
 }  // namespace calibrd

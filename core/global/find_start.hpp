@@ -28,11 +28,13 @@ struct StartHypothesis {
   RenderScore score;
 };
 
-/// Finds the sensor with no idea where it is, from what moved between two views or more: whatever the moving
+/// Finds the sensor with no idea where it is, from what moved between the views (`moving`: their
+/// robot_candidates()): whatever the moving
 /// points' shape fits, all orientations tried, judged by rendering (depth agreement minus free-space
 /// violation). Of one view anything may be the robot: what is found then is no more than what it might be.
 /// Hypotheses that differ, best first; empty when nothing moved.
-std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views, const CameraModel& camera,
+std::vector<StartHypothesis> find_starts(std::span<const RegistrationView> views,
+                                         std::span<const MovingPoints> moving, const CameraModel& camera,
                                          const StartSettings& settings);
 
 }  // namespace calibrd

@@ -148,19 +148,14 @@ std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> v
   return moving;
 }
 
-MovingPoints all_points(const RegistrationView& view, const CameraModel& camera, double max_depth_m,
-                        const MovingSettings& settings) {
-  PixelMask near(view.depth_m.size());
-  std::ranges::transform(view.depth_m, near.begin(), [max_depth_m](float z) {
-    return static_cast<std::uint8_t>(z > 0 && z < max_depth_m);
-  });
-  return {thinned(near, view, camera, settings.voxel_m), {}};
-}
-
-std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera) {
-  std::vector<PixelMask> masks;
-  for (MovingPoints& moving : find_moving_points(views, camera, {})) masks.push_back(std::move(moving.mask));
-  return masks;
+std::vector<MovingPoints> robot_candidates(std::span<const RegistrationView> views,
+                                           const CameraModel& camera) {
+  constexpr float kFarthest_m = 4;
+  if (views.size() != 1) return find_moving_points(views, camera, {});
+  PixelMask near(views[0].depth_m.size());
+  std::ranges::transform(views[0].depth_m, near.begin(),
+                         [](float z) { return static_cast<std::uint8_t>(z > 0 && z < kFarthest_m); });
+  return {{thinned(near, views[0], camera, MovingSettings{}.voxel_m), {}}};
 }
 
 }  // namespace calibrd

@@ -21,7 +21,7 @@ using PixelMask = std::vector<std::uint8_t>;
 /// What of one view is not there in other views: the robot, what it carries, and what else moves.
 struct MovingPoints {
   std::vector<Eigen::Vector3f> points;  ///< sensor frame, m, thinned evenly
-  PixelMask mask;
+  PixelMask mask;                       ///< empty where nothing is known to have moved
 };
 
 /// Finds what moved between the views by comparing each pixel with the same pixel of the other views: the
@@ -31,12 +31,9 @@ struct MovingPoints {
 std::vector<MovingPoints> find_moving_points(std::span<const RegistrationView> views,
                                              const CameraModel& camera, const MovingSettings& settings);
 
-/// All that one view shows within `max_depth_m`, thinned evenly: where nothing is known to have moved,
-/// anything may be the robot. Its mask is empty.
-MovingPoints all_points(const RegistrationView& view, const CameraModel& camera, double max_depth_m,
-                        const MovingSettings& settings);
-
-/// The masks of find_moving_points() alone, one per view.
-std::vector<PixelMask> moving_masks(std::span<const RegistrationView> views, const CameraModel& camera);
+/// Where the robot may be: what moved between the views, or, in a single one, all that is near; then the mask
+/// is empty.
+std::vector<MovingPoints> robot_candidates(std::span<const RegistrationView> views,
+                                           const CameraModel& camera);
 
 }  // namespace calibrd

@@ -13,9 +13,8 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
-RenderScore score_of(const RegistrationView& view, const std::vector<std::uint8_t>* moving,
-                     const CameraModel& camera, const Pose& T_base_sensor,
-                     const RenderScoreSettings& settings) {
+RenderScore score_of(const RegistrationView& view, const PixelMask& moving, const CameraModel& camera,
+                     const Pose& T_base_sensor, const RenderScoreSettings& settings) {
   const CameraModel sparse = camera.subsampled(settings.reduction);
   const auto tolerance = static_cast<float>(settings.tolerance_m);
   VirtualMeasurement prediction;
@@ -30,7 +29,7 @@ RenderScore score_of(const RegistrationView& view, const std::vector<std::uint8_
       const float measured = view.depth_m[full];
       if (measured <= 0) continue;
       const bool agrees = z > 0 && std::abs(measured - z) < tolerance;
-      if (moving != nullptr && (*moving)[full] != 0) {
+      if (!moving.empty() && moving[full] != 0) {
         ++score.moving;
         score.explained += agrees ? 1 : 0;
       }
@@ -59,13 +58,14 @@ double RenderScore::value() const {
 }
 
 std::vector<RenderScore> render_scores(std::span<const RegistrationView> views,
-                                       std::span<const std::vector<std::uint8_t>> moving,
-                                       const CameraModel& camera, std::span<const Pose> poses_base_sensor,
+                                       std::span<const MovingPoints> moving, const CameraModel& camera,
+                                       std::span<const Pose> poses_base_sensor,
                                        const RenderScoreSettings& settings) {
   std::vector<std::vector<RenderScore>> by_view(views.size());
   // In parallel over views, never over poses: a virtual cell serves one thread at a time.
   tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-    const std::vector<std::uint8_t>* mask = moving.empty() ? nullptr : &moving[v];
+    const PixelMask unknown;
+    const PixelMask& mask = moving.empty() ? unknown : moving[v].mask;
     for (const Pose& T_base_sensor : poses_base_sensor)
       by_view[v].push_back(score_of(views[v], mask, camera, T_base_sensor, settings));
   });

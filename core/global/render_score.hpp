@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/registration/registration_view.hpp"
+#include "core/global/moving_points.hpp"
 
 namespace calibrd {
 
@@ -27,10 +26,11 @@ struct RenderScoreSettings {
   double tolerance_m = 0.05;  ///< the start is rough, and the range is biased
 };
 
-/// One score per pose. `moving`: per view, per pixel, 1 = moved; empty when nothing is known of that.
+/// One score per pose. `moving`: one per view, as robot_candidates() gives them; empty when nothing is known
+/// of that.
 std::vector<RenderScore> render_scores(std::span<const RegistrationView> views,
-                                       std::span<const std::vector<std::uint8_t>> moving,
-                                       const CameraModel& camera, std::span<const Pose> poses_base_sensor,
+                                       std::span<const MovingPoints> moving, const CameraModel& camera,
+                                       std::span<const Pose> poses_base_sensor,
                                        const RenderScoreSettings& settings);
 
 }  // namespace calibrd

@@ -15,7 +15,7 @@ void print_starts(const Input& input) {
   const VirtualCell cell(input.robot);
   const auto views = prepare_views(cell, input.camera, input.views, {});
   const auto begin = std::chrono::steady_clock::now();
-  const auto starts = find_starts(views, input.camera, {});
+  const auto starts = find_starts(views, robot_candidates(views, input.camera), input.camera, {});
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
   std::printf("{\"search_ms\": %.1f, \"hypotheses\": [", took.count());
   for (std::size_t i = 0; i < starts.size(); ++i) {

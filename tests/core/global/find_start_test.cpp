@@ -13,7 +13,8 @@ namespace {
 using namespace test;
 
 std::vector<StartHypothesis> starts_of(std::span<const View> views) {
-  return find_starts(prepare_views(VirtualCell(test_arm()), ideal_kinect2(), views, {}), ideal_kinect2(), {});
+  const auto prepared = prepare_views(VirtualCell(test_arm()), ideal_kinect2(), views, {});
+  return find_starts(prepared, robot_candidates(prepared, ideal_kinect2()), ideal_kinect2(), {});
 }
 
 void expect_near_truth(const std::vector<StartHypothesis>& starts) {
@@ -92,9 +93,10 @@ std::vector<View> views_of_specks(std::size_t count) {
 
 TEST(FindStart, SaysNothingWhenWhatMovesFormsNoGroup) {
   const auto views = prepare_views(VirtualCell(test_arm()), ideal_kinect2(), views_of_specks(4), {});
-  for (const MovingPoints& moving : find_moving_points(views, ideal_kinect2(), {}))
-    EXPECT_GT(moving.points.size(), 8U);  // there is motion, but none of a robot
-  EXPECT_TRUE(find_starts(views, ideal_kinect2(), {}).empty());
+  const auto moving = robot_candidates(views, ideal_kinect2());
+  for (const MovingPoints& of_view : moving)
+    EXPECT_GT(of_view.points.size(), 8U);  // there is motion, but none of a robot
+  EXPECT_TRUE(find_starts(views, moving, ideal_kinect2(), {}).empty());
 }
 
 TEST(RenderScores, FallWhenTheSensorLooksThroughTheRobot) {
