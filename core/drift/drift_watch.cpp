@@ -225,7 +225,6 @@ bool DriftWatch::is_in_place() const {
   return has_background() && !moved_ && frame_s_ - evidence_s_ < kEvidence_s && !wants_check();
 }
 
-
 void DriftWatch::judge(double now_s) {
   const bool seen = now_s - evidence_s_ < kEvidence_s || now_s - check_s_ < kCheck_s;
   const bool in_front = now_s - in_front_s_ < kInFront_s;

@@ -21,11 +21,12 @@ void SceneChange::add(std::span<const CellState> states, std::span<const float> 
   for (std::size_t i = 0; i < states.size(); ++i) {
     Cell& cell = cells_[i];
     const CellState state = states[i];
-    // The robot hides a cell for a while, or a pixel fails: what was known of it still holds.
-    if (state == CellState::robot || state == CellState::dark) continue;
+    const bool hidden = state == CellState::robot || state == CellState::dark;
     const bool same = state == cell.state && std::abs(depth_m[i] - cell.depth_m) < kSameDepth_m;
-    if (!same) cell = {state, depth_m[i], now_s};
-    const bool changed = state == CellState::nearer || state == CellState::farther;
+    if (!same && !hidden) cell = {state, depth_m[i], now_s};
+    // The robot hides a cell for a while, or a pixel fails: what had settled there still holds.
+    if (hidden && now_s - cell.since_s < settings_.settle_s) continue;
+    const bool changed = cell.state == CellState::nearer || cell.state == CellState::farther;
     changed_[i] = changed && (ignored.empty() || ignored[i] == 0) ? 1 : 0;
   }
   count(now_s);

@@ -46,9 +46,7 @@ class WatchedSensor {
     checked_s_ = now_s;
     DepthCorrection correction = correction_;
     correction.offset_m += watch_.report().depth_offset_change_m;
-    const auto check = checker_.check(frame.view, T_base_sensor_, correction);
-    if (std::getenv("DBG")) std::fprintf(stderr, "%.2f check ev %d agrees %d share %.2f shift %.2f mm turn %.2f mrad sig %.2f px %zu hid %zu | near %.3f far %.3f dark %.3f %s stat %.1f\n", now_s, check.enough_evidence, check.agrees, check.agreement, 1e3*check.shift_m, 1e3*check.turn_rad, check.shift_sigmas, check.robot_pixels, check.hidden_pixels, watch_.report().nearer, watch_.report().farther, watch_.report().dark, name_of(watch_.report().verdict), watch_.report().statistic);
-    watch_.add_check(check, now_s);
+    watch_.add_check(checker_.check(frame.view, T_base_sensor_, correction), now_s);
   }
   const DriftWatch& watch() const { return watch_; }
   double mean_ms() const { return spent_ms_ / frames_; }
@@ -87,6 +85,7 @@ json::object run_event(const Scene& scene, const CalibrationResult& calibration,
     before[name_of(sensor.watch().report().verdict)] += 1 / RunningCell::kRate_hz;
   }
   const std::string what = cell.stage(event);
+  if (what.empty()) return {};
   int frames = 0, detected = -1;
   while (cell.time_s() < kQuiet_s + kWatched_s) {
     sensor.see(cell.next());
@@ -136,11 +135,13 @@ int run_watch(const WatchOptions& options) {
     sim::CaptureOptions capture;
     capture.postures = 6;
     const auto scene = simulate_scene(robots[seed % robots.size()], seed, capture, tables);
-    if (!scene || scene->truth.world->state.person.present != 0) continue;  // else the background holds a person
+    if (!scene || scene->truth.world->state.person.present != 0)
+      continue;  // else the background holds a person
     const auto calibration =
         calibrate(scene->robot->model, scene->camera, scene->views, CalibrationSettings{});
     if (calibration.verdict != Verdict::accepted) continue;
     const auto line = run_event(*scene, calibration, tables, kEvents[seed % std::size(kEvents)], seed);
+    if (line.empty()) continue;
     std::printf("%s\n", json::serialize(line).c_str());
     std::fflush(stdout);
   }

@@ -13,6 +13,9 @@ namespace {
 constexpr double kWorkSpeed_rad_s = 0.5, kHold_s = 1.0;
 constexpr double kStillSpeed_rad_s = 0.002;
 constexpr double kBiasRamp_s = 2;
+/// What nobody could see, hidden or out of view, is no event.
+constexpr float kSeenChange_m = 0.04F;
+constexpr std::size_t kSeenPixels = 800;
 constexpr double kMostTurn_rad = 0.05, kMostShift_m = 0.03, kLeastMove = 0.003;
 
 std::string said(const char* format, double a, double b = 0) {
@@ -101,27 +104,45 @@ void RunningCell::send_person() {
   state_.person = {1, now_ns_, {from.x(), from.y()}, {to.x(), to.y()}, -0.8, random_.uniform(0.6, 1.4)};
 }
 
-std::string RunningCell::change_scene() {
-  const auto& objects = scene_.truth.world->cell.objects;
-  std::vector<std::size_t> boxes;
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (objects[i].name == "box" || objects[i].name == "post") boxes.push_back(i);
-  if (boxes.empty()) return {};
-  const std::size_t chosen = boxes[random_.bits() % boxes.size()];
+std::string RunningCell::change_object(std::size_t chosen) {
+  const std::string& name = scene_.truth.world->cell.objects[chosen].name;
   auto& object = state_.objects[chosen];
-  if (object.present != 0 && random_.chance(0.5)) {
-    object.present = 0;
-    return objects[chosen].name + " taken away";
-  }
   if (object.present == 0) {
     object.present = 1;
-    return objects[chosen].name + " brought";
+    return name + " brought";
+  }
+  if (random_.chance(0.5)) {
+    object.present = 0;
+    return name + " taken away";
   }
   auto pose = object.T_base_object.pose();
   const double angle = random_.uniform(-std::numbers::pi, std::numbers::pi), way = random_.uniform(0.08, 0.3);
   pose.translation() += Eigen::Vector3d(way * std::cos(angle), way * std::sin(angle), 0);
   object.T_base_object = sim::PoseValues::of(pose);
-  return objects[chosen].name + said(" moved by %.0f mm", 1e3 * way);
+  return name + said(" moved by %.0f mm", 1e3 * way);
+}
+
+std::vector<float> RunningCell::true_depth_m() {
+  model_.expose(state_, state_.sensors[0], now_ns_, 0, depth_mm_, {});
+  return {model_.truth().depth_m.begin(), model_.truth().depth_m.end()};
+}
+
+std::string RunningCell::change_scene() {
+  const auto& objects = scene_.truth.world->cell.objects;
+  std::vector<std::size_t> things;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].name == "box" || objects[i].name == "post") things.push_back(i);
+  const auto before = true_depth_m();
+  for (int tries = 0; tries < 20 && !things.empty(); ++tries) {
+    const auto objects_before = state_.objects;
+    const std::string what = change_object(things[random_.bits() % things.size()]);
+    const auto after = true_depth_m();
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) changed += std::abs(after[i] - before[i]) > kSeenChange_m;
+    if (changed >= kSeenPixels) return what + said(" (%.0f px)", static_cast<double>(changed));
+    state_.objects = objects_before;
+  }
+  return {};
 }
 
 std::string RunningCell::stage(Event event) {

@@ -52,11 +52,14 @@ class RunningCell {
   /// A walk across the space between the sensor and the robot, once.
   void send_person();
   void send_person_away() { state_.person.present = 0; }
-  /// Takes away, brings back or shifts one of the things on the bench, if there is one in sight.
+  /// Takes away, brings back or shifts one of the things that stand around, so that the sensor sees it.
+  /// Empty: none of them can be seen.
   std::string change_scene();
 
  private:
   Eigen::Vector3d random_direction();
+  std::string change_object(std::size_t chosen);
+  std::vector<float> true_depth_m();
 
   const Scene& scene_;
   sim::WorldState state_;
