@@ -33,7 +33,7 @@ struct BackgroundMatcher::Fit {
   Information information = Information::Zero();
   Parameters gradient = Parameters::Zero();
   Information covariance = Information::Zero();
-  double squares = 0, cluster_squares = 0, scatter = 1;
+  double squares = 0, cluster_squares = 0, scatter = 1, common = 0;
   std::size_t used = 0;
 };
 
@@ -97,6 +97,7 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
     pulls_[row.cluster] += pull;
     fit.squares += pull * pull;
     whitened_.push_back(static_cast<float>(whitened));
+    fit.common += 1 / (1 + static_cast<double>(map_.cells()[row.cell].frames));
     ++fit.used;
   }
   for (const double pull : pulls_) fit.cluster_squares += pull * pull;
@@ -164,6 +165,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.offset_change_m = found.solution[6];
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
+  observation.common_share = found.common / static_cast<double>(found.used);
   if (observation.has_evidence && std::abs(found.solution[6]) < kFirstKernel_m)
     last_offset_m_ = found.solution[6];
   return observation;

@@ -108,7 +108,16 @@ int run_scenes(ScenesOptions options);
 struct WatchOptions {
   Paths urdfs, models;  ///< the scenes take the robots in turn
   std::uint64_t first_seed = 1, events = 21;
+  std::string event;  ///< the verdict that is right for it; empty: all kinds in turn
 };
 int run_watch(const WatchOptions& options);
+
+struct WatchHoursOptions {
+  Paths urdfs, models;
+  std::uint64_t first_seed = 1, cells = 6;
+  double hours = 1;                                ///< of all cells together
+  std::filesystem::path innovations = "/dev/null";  ///< to write them to
+};
+int run_watch_hours(const WatchHoursOptions& options);
 
 }  // namespace calibrd::bench

@@ -97,7 +97,19 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
       ->required();
   command->add_option("--models", watch.models, "folders to look robot models up in");
   command->add_option("--first-seed", watch.first_seed);
-  command->add_option("--events", watch.events)->check(CLI::Range(1, 1000000));
+  command->add_option("--events", watch.events, "seeds; some have no event to show")->check(CLI::Range(1, 1000000));
+  command->add_option("--event", watch.event, "only of this kind: the verdict that is right for it");
+  return command;
+}
+
+CLI::App* add_watch_hours(CLI::App& app, WatchHoursOptions& hours) {
+  CLI::App* command = app.add_subcommand("watch-hours", "watch sensors that stand in cells at work");
+  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")->required();
+  command->add_option("--models", hours.models, "folders to look robot models up in");
+  command->add_option("--first-seed", hours.first_seed);
+  command->add_option("--cells", hours.cells)->check(CLI::Range(1, 100000));
+  command->add_option("--hours", hours.hours, "of all cells together")->check(CLI::Range(0.0, 1e5));
+  command->add_option("--innovations", hours.innovations, "file to write them to, for watch-tail");
   return command;
 }
 
@@ -120,6 +132,8 @@ int main(int argc, char** argv) {
   const CLI::App* scenes_command = add_scenes(app, scenes);
   const CLI::App* register_command = add_register(app, clouds);
   const CLI::App* watch_command = add_watch(app, watch);
+  WatchHoursOptions watch_hours;
+  const CLI::App* watch_hours_command = add_watch_hours(app, watch_hours);
   const CLI::App* track_command = add_track(app, track);
   try {
     app.parse(argc, argv);
@@ -128,6 +142,7 @@ int main(int argc, char** argv) {
   }
   if (register_command->parsed()) return run_register(clouds);
   if (watch_command->parsed()) return run_watch(watch);
+  if (watch_hours_command->parsed()) return run_watch_hours(watch_hours);
   if (track_command->parsed()) return run_track(track);
   if (global_command->parsed()) return run_global(global);
   if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {
