@@ -11,7 +11,10 @@
 namespace calibrd {
 namespace {
 
-constexpr double kFirstKernel_m = 0.04, kLeastKernel_m = 0.006;
+/// Of a sensor that stands or has moved a little, and of one that has moved far.
+constexpr double kNearKernel_m = 0.012, kFarKernel_m = 0.04, kLeastKernel_m = 0.006;
+/// The near one will do when of the cells that the far one would look at it leaves out no more than this.
+constexpr double kLeftOut = 0.15;
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kTypicalSigma_m = 1.6e-3;
 constexpr int kSteps = 3;
@@ -34,7 +37,10 @@ struct BackgroundMatcher::Fit {
   Parameters gradient = Parameters::Zero();
   Information covariance = Information::Zero();
   double squares = 0, cluster_squares = 0, scatter = 1, common = 0;
-  std::size_t used = 0;
+  std::size_t used = 0, around = 0;
+  bool explains_most() const {
+    return static_cast<double>(used) >= (1 - kLeftOut) * static_cast<double>(around);
+  }
 };
 
 /// The sensor moves by δ (sensor axes), the plane m·p = 1 stands: the depth z = 1/(m·d) along d changes by
@@ -86,6 +92,7 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
     const float z = depth_m_[row.cell];
     if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
     const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
+    if (std::abs(residual) < kFarKernel_m) ++fit.around;
     const double off = residual / kernel_m;
     if (std::abs(off) >= 1) continue;
     const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
@@ -104,12 +111,22 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
   fit.information = fit.information.selfadjointView<Eigen::Lower>();
 }
 
+/// From afar a post that is gone, a hand's breadth before the wall that was behind it, pulls the whole
+/// background along, and does not let go of it again: what stands is looked for first.
 BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robot) {
+  Fit near = descend(robot, kNearKernel_m);
+  if (near.explains_most() && near.used >= kLeastCells) return near;
+  Fit far = descend(robot, kFarKernel_m);
+  return far.used > near.used ? far : near;
+}
+
+BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> robot,
+                                                  double first_kernel_m) {
   Parameters at = Parameters::Zero();
   at[6] = last_offset_m_;
   Parameters vague = Parameters::Constant(1 / (kVague * kVague));
   vague[6] = 1 / (kVagueOffset_m * kVagueOffset_m);
-  double kernel_m = kFirstKernel_m;
+  double kernel_m = first_kernel_m;
   Fit fit;
   for (int i = 0; i < kSteps; ++i) {
     collect(robot, at, kernel_m, fit);
@@ -122,7 +139,7 @@ BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robo
     const Eigen::LDLT<Information> solver(information);
     at += solver.solve(worth * fit.gradient - vague.cwiseProduct(at));
     fit.covariance = solver.solve(Information::Identity());
-    kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, kFirstKernel_m);
+    kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, first_kernel_m);
   }
   fit.solution = at;
   return fit;
@@ -166,7 +183,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
   observation.common_share = found.common / static_cast<double>(found.used);
-  if (observation.has_evidence && std::abs(found.solution[6]) < kFirstKernel_m)
+  if (observation.has_evidence && std::abs(found.solution[6]) < kFarKernel_m)
     last_offset_m_ = found.solution[6];
   return observation;
 }

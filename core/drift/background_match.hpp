@@ -82,6 +82,7 @@ class BackgroundMatcher {
   struct Fit;
   void sample(const DepthImage& depth);
   Fit fit(std::span<const std::uint8_t> robot);
+  Fit descend(std::span<const std::uint8_t> robot, double first_kernel_m);
   void collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m, Fit& fit);
   void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
 

@@ -17,6 +17,7 @@ namespace json = boost::json;
 
 constexpr double kQuiet_s = 4, kWatched_s = 9;
 constexpr double kLeastVerdict_s = 0.3;
+constexpr int kLasting = 45;  // frames after which a verdict that stays has shown that it does
 
 /// What was shown for longest besides "in place".
 std::string shown_most(const std::map<std::string, double>& seconds) {
@@ -61,6 +62,8 @@ json::object run_event(const CalibratedScenes::One& one,
     ++frames;
     after[verdict] += 1 / RunningCell::kRate_hz;
     if (detected < 0 && verdict == right_verdict(event)) detected = frames;
+    const bool lasts = event == Event::sensor_moved || event == Event::dark;
+    if (lasts && detected >= 0 && frames > detected + kLasting) break;
   }
   json::object line{{"seed", seed},
                     {"robot", one.scene.robot->name},
