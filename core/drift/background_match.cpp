@@ -24,10 +24,14 @@ constexpr int kClusterSide = 6;
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
 constexpr std::size_t kLeastCells = 150;
+constexpr std::size_t kRowsInSingle = 128;
 /// Below this share of what could be seen the fit may be of anything.
 constexpr double kLeastShare = 0.35;
 /// No direction is known worse than this before the frame: it only keeps the equations solvable.
 constexpr double kVague = 0.5, kVagueOffset_m = 0.1;
+
+using Slope = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, 1>;
+using Products = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, BackgroundMatcher::kParameters + 1>;
 
 }  // namespace
 
@@ -59,8 +63,7 @@ void BackgroundMatcher::refresh() {
       Row row{cell,
               static_cast<std::uint32_t>(y / kClusterSide) * per_row +
                   static_cast<std::uint32_t>(x / kClusterSide),
-              known.sigma_m,
-              {}};
+              known.sigma_m};
       row.slope.head<3>() = -z * z * d.cross(m);
       row.slope.segment<3>(3) = -z * m;
       row.slope[6] = 1;
@@ -87,7 +90,18 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
   fit = {};
   whitened_.clear();
   pulls_.assign(clusters_, 0.0);
-  const Eigen::Matrix<float, kParameters, 1> start = at.cast<float>();
+  Slope start = Slope::Zero();
+  start.head<kParameters>() = at.cast<float>();
+  Products products = Products::Zero();  // in single precision over some rows, then in double
+  Slope gradient = Slope::Zero();
+  std::size_t pending = 0;
+  const auto flush = [&] {
+    fit.information += products.topLeftCorner<kParameters, kParameters>().cast<double>();
+    fit.gradient += gradient.head<kParameters>().cast<double>();
+    products.setZero();
+    gradient.setZero();
+    pending = 0;
+  };
   for (const Row& row : rows_) {
     const float z = depth_m_[row.cell];
     if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
@@ -96,10 +110,11 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
     const double off = residual / kernel_m;
     if (std::abs(off) >= 1) continue;
     const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
-    const Parameters slope = row.slope.cast<double>();
-    const double weight = robust / (static_cast<double>(row.sigma_m) * row.sigma_m);
-    fit.information.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-    fit.gradient += weight * residual * slope;
+    const float weight = static_cast<float>(robust) / (row.sigma_m * row.sigma_m);
+    const Slope weighted = weight * row.slope;
+    products.noalias() += weighted * row.slope.transpose();
+    gradient += residual * weighted;
+    if (++pending == kRowsInSingle) flush();
     const double pull = robust * whitened;
     pulls_[row.cluster] += pull;
     fit.squares += pull * pull;
@@ -107,8 +122,8 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
     fit.common += 1 / (1 + static_cast<double>(map_.cells()[row.cell].frames));
     ++fit.used;
   }
+  flush();
   for (const double pull : pulls_) fit.cluster_squares += pull * pull;
-  fit.information = fit.information.selfadjointView<Eigen::Lower>();
 }
 
 /// From afar a post that is gone, a hand's breadth before the wall that was behind it, pulls the whole

@@ -77,7 +77,8 @@ class BackgroundMatcher {
   struct Row {
     std::uint32_t cell = 0, cluster = 0;
     float sigma_m = 0;
-    Eigen::Matrix<float, kParameters, 1> slope;  // of the depth by the parameters
+    /// Of the depth by the parameters; an eighth, 0, makes two whole vectors of it.
+    Eigen::Matrix<float, kParameters + 1, 1> slope = Eigen::Matrix<float, kParameters + 1, 1>::Zero();
   };
   struct Fit;
   void sample(const DepthImage& depth);

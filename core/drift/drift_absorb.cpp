@@ -40,7 +40,7 @@ void DriftWatch::mark_carried(const View& frame) {
 
 /// The first frames make the map better than the few views it was learnt from, as long as nothing moves.
 void DriftWatch::refine(const BackgroundObservation& observation, double now_s) {
-  if (!observation.has_evidence || observation.realigned || wants_check() || moved_ ||
+  if (!observation.has_evidence || observation.realigned || is_doubtful() || moved_ ||
       now_s - learnt_s_ > kRefine_s)
     return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
@@ -57,7 +57,7 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
 void DriftWatch::absorb(double now_s) {
   if (now_s - absorbed_s_ < kAbsorbEvery_s) return;
   absorbed_s_ = now_s;
-  if (moved_ || wants_check() || !is_seen(now_s)) return;
+  if (moved_ || is_doubtful() || !is_seen(now_s)) return;
   take(scene_.unchanged_for(settings_.absorb_s));
 }
 

@@ -25,6 +25,7 @@ constexpr double kCheck_s = 2;    // a comparison with the robot is of now for s
 /// what noise, model and joint zeros explain, in every posture; the allowance is beyond that, because the
 /// comparisons of one posture all err alike.
 constexpr double kRobotAllowance = 2.7, kRobotMost = 2, kRobotLimit = 6;
+constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 /// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
 /// the sensor has moved is not believed.
@@ -69,7 +70,7 @@ void DriftWatch::learn(std::span<const View> views) {
   T_learnt_now_.reset();
   check_.reset();
   moved_ = bias_changed_ = model_wrong_ = false;
-  robot_statistic_ = 0;
+  robot_statistic_ = posture_sum_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
   evidence_s_ = pinned_s_ = in_front_s_ = check_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
@@ -80,6 +81,7 @@ void DriftWatch::learn(std::span<const View> views) {
 
 const DriftReport& DriftWatch::add_frame(const View& frame) {
   frame_s_ = frame.stamp_s;
+  if (!frame.joint_positions_rad.empty()) joints_ = frame.joint_positions_rad;
   if (learnt_s_ < 0) learnt_s_ = frame_s_;
   ++frames_;
   report_.has_background = has_background();
@@ -215,7 +217,8 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
   check_ = check;
   check_s_ = now_s;
   const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
-  robot_statistic_ = std::max(0.0, robot_statistic_ + std::min(sigmas - kRobotAllowance, kRobotMost));
+  const double increment = limited_by_posture(std::min(sigmas - kRobotAllowance, kRobotMost));
+  robot_statistic_ = std::max(0.0, robot_statistic_ + increment);
   robot_statistic_ = std::min(robot_statistic_, 2 * kRobotLimit);  // what is mended shows soon
   if (robot_statistic_ < 0.5 * kRobotLimit) model_wrong_ = false;
   if (robot_statistic_ <= kRobotLimit || model_wrong_ || moved_) return;
@@ -223,6 +226,21 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
     moved_ = true;
   else
     model_wrong_ = true;
+}
+
+/// Comparisons of one posture all err alike, and a part in the gripper may look like the robot: one posture
+/// alone says nothing against the robot.
+double DriftWatch::limited_by_posture(double increment) {
+  bool same = posture_.size() == joints_.size();
+  for (std::size_t j = 0; same && j < joints_.size(); ++j)
+    same = std::abs(joints_[j] - posture_[j]) < kOtherPosture_rad;
+  if (!same) {
+    posture_ = joints_;
+    posture_sum_ = 0;
+  }
+  const double counted = std::min(increment, kMostPerPosture - posture_sum_);
+  posture_sum_ += std::max(0.0, counted);
+  return counted;
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
@@ -241,7 +259,7 @@ bool DriftWatch::is_robots_shift_possible() const {
 }
 
 bool DriftWatch::is_in_place() const {
-  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !wants_check();
+  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
 }
 
 bool DriftWatch::is_seen(double now_s) const {

@@ -60,7 +60,9 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const { return test_.statistic() > 0.2 * test_.threshold(); }
+  bool wants_check() const {
+    return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_);
+  }
   /// The background is in view, where it was, and shows every direction.
   bool is_in_place() const;
 
@@ -87,10 +89,12 @@ class DriftWatch {
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
   void on_denial();
+  double limited_by_posture(double increment);
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
   bool is_robots_shift_possible() const;
   bool is_seen(double now_s) const;
+  bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
   DriftSettings settings_;
   CameraModel camera_;
@@ -116,7 +120,8 @@ class DriftWatch {
   // What the robot said, newest last.
   std::optional<PoseCheck> check_;
   double check_s_ = -1e9;
-  double robot_statistic_ = 0;
+  double robot_statistic_ = 0, posture_sum_ = 0;
+  std::vector<double> joints_, posture_;  // of the last frame; for which the sum is
 };
 
 }  // namespace calibrd

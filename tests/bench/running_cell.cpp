@@ -47,12 +47,6 @@ const char* right_verdict(Event event) {
   return "no_evidence";
 }
 
-Event event_of(std::string_view verdict) {
-  for (const Event event : kEvents)
-    if (verdict == right_verdict(event)) return event;
-  return Event::nothing;
-}
-
 RunningCell::RunningCell(const Scene& scene, std::shared_ptr<const sim::SensorTables> tables,
                          std::uint64_t seed)
     : scene_(scene),
@@ -68,6 +62,7 @@ RunningCell::RunningCell(const Scene& scene, std::shared_ptr<const sim::SensorTa
   for (const auto& name : scene.robot->model.position_names())
     order_.push_back(static_cast<std::size_t>(std::ranges::find(scene.truth.joint_names, name) -
                                               scene.truth.joint_names.begin()));
+  state_.sensors[0].infrared.texture = 0;  // nobody looks at the image
   state_.motion.place(scene.truth.postures.front(), 0);
   state_.motion.visit(scene.truth.postures, sim::Profile::minimum_jerk, kWorkSpeed_rad_s, kHold_s, 0);
 }

@@ -3,7 +3,6 @@
 #pragma once
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tests/bench/company.hpp"
@@ -26,8 +25,6 @@ inline constexpr Event kEvents[] = {Event::nothing,       Event::sensor_moved,  
                                     Event::dark};
 /// The verdict that is right for it, by name.
 const char* right_verdict(Event event);
-/// The other way round; nothing for names that are none.
-Event event_of(std::string_view verdict);
 
 /// A scene whose robot works and in which things happen, frame by frame at 30 Hz, in memory.
 class RunningCell {
