@@ -3,6 +3,7 @@
 #include "core/drift/background_map.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +17,7 @@ constexpr float kSameSurface_m = 0.025F;
 /// Neighbours of a cell may lie this far off its plane, as a share of the depth and in m, or it is an edge.
 constexpr double kOffPlane = 0.004, kLeastOffPlane_m = 0.004;
 constexpr double kMinCosine = 0.2;
+constexpr int kPlaneReach = 2;  // cells to each side that a plane is fitted to
 constexpr int kMargin = 2;  // cells around the robot that may be robot: flying pixels, joints a moment off
 
 /// Mean and size of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts
@@ -95,11 +97,12 @@ void BackgroundMap::fit_planes() {
 
 /// On a plane the inverse depth is linear in the viewing direction: 1/z = m · d.
 void BackgroundMap::fit_plane(int x, int y) {
-  if (x < 1 || y < 1 || x + 1 >= grid_.width || y + 1 >= grid_.height) return;
+  constexpr int kReach = kPlaneReach;
+  if (x < kReach || y < kReach || x + kReach >= grid_.width || y + kReach >= grid_.height) return;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (int v = y - 1; v <= y + 1; ++v) {
-    for (int u = x - 1; u <= x + 1; ++u) {
+  for (int v = y - kReach; v <= y + kReach; ++v) {
+    for (int u = x - kReach; u <= x + kReach; ++u) {
       const double z = cells_[static_cast<std::size_t>(v * grid_.width + u)].depth_m;
       if (z <= 0) return;
       const Eigen::Vector3d d = rays_.at(u, v);
@@ -110,8 +113,8 @@ void BackgroundMap::fit_plane(int x, int y) {
   const Eigen::Vector3d m = normal.ldlt().solve(right);
   BackgroundCell& cell = cells_[static_cast<std::size_t>(y * grid_.width + x)];
   const double z = cell.depth_m, allowed = std::max(kLeastOffPlane_m, kOffPlane * z);
-  for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u) {
+  for (int v = y - kReach; v <= y + kReach; ++v)
+    for (int u = x - kReach; u <= x + kReach; ++u) {
       const double there = cells_[static_cast<std::size_t>(v * grid_.width + u)].depth_m;
       if (!(std::abs(1 / m.dot(rays_.at(u, v)) - there) < allowed)) return;
     }
@@ -120,6 +123,8 @@ void BackgroundMap::fit_plane(int x, int y) {
   if (!(cosine > kMinCosine)) return;
   cell.normal_per_m = m.cast<float>();
   cell.sigma_m = static_cast<float>(depth_sigma_m(z, cosine, 1 / (kBackgroundStride * grid_.fx)));
+  const double sigma = cell.sigma_m / (z * z);  // of the inverse depth
+  cell.normal_noise = (sigma * sigma / std::max(1.0F, cell.frames) * normal.inverse()).cast<float>();
 }
 
 const std::vector<std::uint8_t>& RobotMask::at(std::span<const double> positions, const Pose& T_base_sensor) {

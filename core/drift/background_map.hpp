@@ -19,6 +19,7 @@ constexpr int kBackgroundStride = 4;
 struct BackgroundCell {
   float depth_m = 0;  ///< along the optical axis, as the sensor measured it; 0 = nothing known
   Eigen::Vector3f normal_per_m = Eigen::Vector3f::Zero();  ///< zero: no plane, an edge
+  Eigen::Matrix3f normal_noise = Eigen::Matrix3f::Zero();  ///< covariance of it
   float sigma_m = 0;                                       ///< of one frame's depth here
   float frames = 0;                                        ///< that depth_m is the mean of
   bool has_plane() const { return normal_per_m != Eigen::Vector3f::Zero(); }
@@ -42,6 +43,8 @@ class BackgroundMap {
   /// of more than kMostFrames: what comes later is to be compared with it, not to become part of it.
   void refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen);
   static constexpr float kMostFrames = 60;
+  /// The planes from the means as they are by now.
+  void fit_planes();
 
   /// Too little to say anything of the pose.
   bool is_empty() const { return planes_ == 0; }
@@ -56,7 +59,6 @@ class BackgroundMap {
   static std::size_t size_of(const CameraModel& grid) {
     return static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
   }
-  void fit_planes();
   void fit_plane(int x, int y);
 
   CameraModel grid_;

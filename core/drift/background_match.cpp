@@ -3,6 +3,7 @@
 #include "core/drift/background_match.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -30,8 +31,18 @@ constexpr double kLeastShare = 0.35;
 /// No direction is known worse than this before the frame: it only keeps the equations solvable.
 constexpr double kVague = 0.5, kVagueOffset_m = 0.1;
 
+constexpr double kSpuriousSafety = 1.5;
+using Sums = Eigen::Matrix<double, BackgroundMatcher::kParameters, BackgroundMatcher::kParameters>;
 using Slope = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, 1>;
 using Products = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, BackgroundMatcher::kParameters + 1>;
+
+/// Covariance that is left when part of the information is none.
+Sums without(const Sums& spurious, const Sums& information, const Sums& vague) {
+  const Eigen::SelfAdjointEigenSolver<Sums> solver(information - kSpuriousSafety * spurious);
+  const Sums known = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() *
+                     solver.eigenvectors().transpose();
+  return (known + vague).ldlt().solve(Sums::Identity());
+}
 
 }  // namespace
 
@@ -40,7 +51,7 @@ struct BackgroundMatcher::Fit {
   Information information = Information::Zero();
   Parameters gradient = Parameters::Zero();
   Information covariance = Information::Zero();
-  double squares = 0, cluster_squares = 0, scatter = 1, common = 0;
+  double squares = 0, cluster_squares = 0, scatter = 1, common = 0, worth = 1;
   std::size_t used = 0, around = 0;
   bool explains_most() const {
     return static_cast<double>(used) >= (1 - kLeftOut) * static_cast<double>(around);
@@ -51,6 +62,7 @@ struct BackgroundMatcher::Fit {
 /// -z (m·δt) - z² (d×m)·δω.
 void BackgroundMatcher::refresh() {
   rows_.clear();
+  spurious_.setZero();
   const CameraModel& grid = map_.grid();
   const auto per_row = static_cast<std::uint32_t>((grid.width - 1) / kClusterSide + 1);
   for (int y = 0; y < grid.height; ++y) {
@@ -68,10 +80,24 @@ void BackgroundMatcher::refresh() {
       row.slope.segment<3>(3) = -z * m;
       row.slope[6] = 1;
       rows_.push_back(row);
+      add_spurious(known, d);
     }
   }
   clusters_ =
       static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
+}
+
+/// Normals that scatter look as if they showed every direction: a plain wall would seem to tell of moves
+/// along it. How much of the squares of the slopes is but that.
+void BackgroundMatcher::add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray) {
+  const double z = known.depth_m, sigma = known.sigma_m;
+  const Eigen::Vector3d d = ray.cast<double>();
+  Eigen::Matrix<double, 6, 3> slope_by_normal;
+  slope_by_normal.topRows<3>() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;
+  slope_by_normal.topRows<3>() *= z * z;
+  slope_by_normal.bottomRows<3>() = -z * Eigen::Matrix3d::Identity();
+  spurious_.topLeftCorner<6, 6>() +=
+      slope_by_normal * known.normal_noise.cast<double>() * slope_by_normal.transpose() / (sigma * sigma);
 }
 
 void BackgroundMatcher::sample(const DepthImage& depth) {
@@ -153,10 +179,12 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
     information.diagonal() += vague;
     const Eigen::LDLT<Information> solver(information);
     at += solver.solve(worth * fit.gradient - vague.cwiseProduct(at));
-    fit.covariance = solver.solve(Information::Identity());
+    fit.worth = worth;
     kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, first_kernel_m);
   }
   fit.solution = at;
+  const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
+  fit.covariance = without(fit.worth * seen * spurious_, fit.worth * fit.information, vague.asDiagonal());
   return fit;
 }
 

@@ -40,9 +40,13 @@ void DriftWatch::mark_carried(const View& frame) {
 
 /// The first frames make the map better than the few views it was learnt from, as long as nothing moves.
 void DriftWatch::refine(const BackgroundObservation& observation, double now_s) {
-  if (!observation.has_evidence || observation.realigned || is_doubtful() || moved_ ||
-      now_s - learnt_s_ > kRefine_s)
-    return;
+  if (is_refined_) return;
+  if (now_s - learnt_s_ > kRefine_s) {
+    is_refined_ = true;
+    map_.fit_planes();
+    return matcher_.refresh();
+  }
+  if (!observation.has_evidence || observation.realigned || is_doubtful() || moved_) return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
   std::ranges::transform(matcher_.states(), chosen.begin(),
                          [](CellState state) -> std::uint8_t { return state == CellState::same ? 1 : 0; });

@@ -21,10 +21,9 @@ constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
 constexpr double kCheck_s = 2;    // a comparison with the robot is of now for so long
-/// CUSUM of how far off the robot looks: a comparison of a good model stays below 2.2 standard deviations of
-/// what noise, model and joint zeros explain, in every posture; the allowance is beyond that, because the
-/// comparisons of one posture all err alike.
-constexpr double kRobotAllowance = 2.7, kRobotMost = 2, kRobotLimit = 6;
+/// CUSUM of how far off the robot looks, posture by posture: a comparison of a good model stays below 2.2
+/// standard deviations of what noise, model and joint zeros explain, in nearly every posture.
+constexpr double kRobotAllowance = 2.7, kPostureWeight = 2, kRobotLimit = 5.5;
 constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 /// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
@@ -69,8 +68,9 @@ void DriftWatch::learn(std::span<const View> views) {
   test_.reset();
   T_learnt_now_.reset();
   check_.reset();
-  moved_ = bias_changed_ = model_wrong_ = false;
-  robot_statistic_ = posture_sum_ = 0;
+  moved_ = bias_changed_ = model_wrong_ = is_refined_ = false;
+  robot_statistic_ = before_posture_ = 0;
+  posture_.clear();
   lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
   evidence_s_ = pinned_s_ = in_front_s_ = check_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
@@ -216,10 +216,7 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
   if (!check.enough_evidence) return;
   check_ = check;
   check_s_ = now_s;
-  const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
-  const double increment = limited_by_posture(std::min(sigmas - kRobotAllowance, kRobotMost));
-  robot_statistic_ = std::max(0.0, robot_statistic_ + increment);
-  robot_statistic_ = std::min(robot_statistic_, 2 * kRobotLimit);  // what is mended shows soon
+  follow_posture(check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained);
   if (robot_statistic_ < 0.5 * kRobotLimit) model_wrong_ = false;
   if (robot_statistic_ <= kRobotLimit || model_wrong_ || moved_) return;
   if (is_robots_shift_possible())
@@ -228,19 +225,22 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
     model_wrong_ = true;
 }
 
-/// Comparisons of one posture all err alike, and a part in the gripper may look like the robot: one posture
-/// alone says nothing against the robot.
-double DriftWatch::limited_by_posture(double increment) {
+/// Comparisons of one posture all err alike, and a part in the gripper may look like the robot: a posture has
+/// one word, and one posture alone says nothing against the robot.
+void DriftWatch::follow_posture(double sigmas) {
   bool same = posture_.size() == joints_.size();
   for (std::size_t j = 0; same && j < joints_.size(); ++j)
     same = std::abs(joints_[j] - posture_[j]) < kOtherPosture_rad;
   if (!same) {
     posture_ = joints_;
-    posture_sum_ = 0;
+    before_posture_ = std::min(robot_statistic_, kRobotLimit);  // what is mended shows soon
+    posture_sigmas_ = posture_checks_ = 0;
   }
-  const double counted = std::min(increment, kMostPerPosture - posture_sum_);
-  posture_sum_ += std::max(0.0, counted);
-  return counted;
+  ++posture_checks_;
+  posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
+  const double word =
+      std::clamp(kPostureWeight * (posture_sigmas_ - kRobotAllowance), -kMostPerPosture, kMostPerPosture);
+  robot_statistic_ = std::max(0.0, before_posture_ + word);
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
@@ -273,8 +273,8 @@ void DriftWatch::judge(double now_s) {
   else if (model_wrong_)
     report_.verdict = DriftVerdict::robot_model_wrong;
   else if (!is_seen(now_s))
-    report_.verdict = in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front
-                                                       : DriftVerdict::no_evidence;
+    report_.verdict =
+        in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
   else if (bias_changed_)
     report_.verdict = DriftVerdict::depth_bias_changed;
   else if (scene_.has_changed() || now_s - denied_s_ < kEvidence_s)

@@ -60,9 +60,7 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const {
-    return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_);
-  }
+  bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
   /// The background is in view, where it was, and shows every direction.
   bool is_in_place() const;
 
@@ -89,7 +87,7 @@ class DriftWatch {
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
   void on_denial();
-  double limited_by_posture(double increment);
+  void follow_posture(double sigmas);
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
   bool is_robots_shift_possible() const;
@@ -107,21 +105,23 @@ class DriftWatch {
   DriftReport report_;
   std::optional<Innovation> innovation_;
   std::optional<Matrix6d> last_covariance_;  // of the last innovation
-  std::optional<Pose> T_learnt_now_;  // of the last realignment
+  std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
-  bool moved_ = false;
+  bool moved_ = false, is_refined_ = false;
   int frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0, learnt_s_ = -1;
-  double pinned_s_ = -1e9;                           // last time the background showed every direction
+  double pinned_s_ = -1e9;                          // last time the background showed every direction
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
-  double in_front_s_ = -1e9;  // last time something was
+  double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
   bool bias_changed_ = false, model_wrong_ = false;
   // What the robot said, newest last.
   std::optional<PoseCheck> check_;
   double check_s_ = -1e9;
-  double robot_statistic_ = 0, posture_sum_ = 0;
-  std::vector<double> joints_, posture_;  // of the last frame; for which the sum is
+  double robot_statistic_ = 0, before_posture_ = 0;
+  std::vector<double> joints_, posture_;  // of the last frame; of the posture that is looked at
+  double posture_sigmas_ = 0;             // mean of its comparisons
+  int posture_checks_ = 0;
 };
 
 }  // namespace calibrd

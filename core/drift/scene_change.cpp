@@ -8,7 +8,13 @@
 namespace calibrd {
 namespace {
 
-constexpr float kSameDepth_m = 0.02F;
+/// Where the noise of one frame grows as the square of the distance does.
+constexpr float kSameDepth_m = 0.02F, kSameDepthUpTo_m = 1.5F;
+
+float same_depth_m(float depth_m) {
+  const float far = std::max(1.0F, depth_m / kSameDepthUpTo_m);
+  return kSameDepth_m * far * far;
+}
 
 }  // namespace
 
@@ -25,7 +31,7 @@ void SceneChange::add(std::span<const CellState> states, std::span<const float> 
     Cell& cell = cells_[i];
     const CellState state = states[i];
     const bool hidden = state == CellState::robot || state == CellState::dark;
-    const bool same = state == cell.state && std::abs(depth_m[i] - cell.depth_m) < kSameDepth_m;
+    const bool same = state == cell.state && std::abs(depth_m[i] - cell.depth_m) < same_depth_m(cell.depth_m);
     if (!same && !hidden) {
       cell = {state, depth_m[i], now_s};
       mean_frames_[i] = 0;
@@ -33,6 +39,7 @@ void SceneChange::add(std::span<const CellState> states, std::span<const float> 
     if (!hidden) {
       mean_frames_[i] = std::min(mean_frames_[i] + 1, BackgroundMap::kMostFrames);
       mean_depth_m_[i] += (depth_m[i] - mean_depth_m_[i]) / mean_frames_[i];
+      cell.depth_m = mean_depth_m_[i];
     }
     // The robot hides a cell for a while, or a pixel fails: what had settled there still holds.
     if (hidden && now_s - cell.since_s < settings_.settle_s) continue;

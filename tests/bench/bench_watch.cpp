@@ -19,8 +19,12 @@ constexpr double kQuiet_s = 2, kWatched_s = 12;
 constexpr double kLeastVerdict_s = 0.3;
 constexpr double kLasting_s = 2;  // shown in all, the right verdict has shown itself
 
-/// What was shown for longest besides "in place".
-std::string shown_most(const std::map<std::string, double>& seconds) {
+/// That the sensor has moved, if it was ever said; else `right`, if it was said for long enough; else what
+/// was said for longest besides "in place".
+std::string told(const std::map<std::string, double>& seconds, const std::string& right) {
+  if (seconds.contains("sensor_moved")) return "sensor_moved";
+  const auto said = seconds.find(right);
+  if (right != "in_place" && said != seconds.end() && said->second >= kLasting_s - 0.01) return right;
   std::string most = "in_place";
   double longest = kLeastVerdict_s;
   for (const auto& [name, duration] : seconds)
@@ -28,7 +32,7 @@ std::string shown_most(const std::map<std::string, double>& seconds) {
       most = name;
       longest = duration;
     }
-  return seconds.contains("sensor_moved") ? "sensor_moved" : most;
+  return most;
 }
 
 json::object described(const WatchedSensor& sensor) {
@@ -70,9 +74,9 @@ json::object run_event(const CalibratedScenes::One& one,
                     {"what", what},
                     {"moved_mm", 1e3 * cell.moved_m()},
                     {"turned_mrad", 1e3 * cell.turned_rad()},
-                    {"verdict", shown_most(after)},
+                    {"verdict", told(after, right_verdict(event))},
                     {"last", name_of(sensor.watch().report().verdict)},
-                    {"before", shown_most(before)},
+                    {"before", told(before, "in_place")},
                     {"frames_to_verdict", detected}};
   for (auto& [key, value] : described(sensor)) line[key] = value;
   json::object seconds;

@@ -16,7 +16,10 @@ TEST_F(RobotsWord, BackgroundInPlaceAndRobotOffIsTheModel) {
   }
   watch_for(0.1);
   EXPECT_EQ(verdict(), DriftVerdict::robot_model_wrong);
-  for (int i = 0; i < 10; ++i) check(Vector6d::Zero());
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    check(Vector6d::Zero());
+  }
   watch_for(0.1);
   EXPECT_EQ(verdict(), DriftVerdict::in_place);
 }
