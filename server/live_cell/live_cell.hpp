@@ -100,10 +100,13 @@ class LiveCell : public api::CellService {
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-               std::vector<View> views = {});
+               DriftMonitor::Background background = {});
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
+  std::unique_ptr<DriftMonitor> make_monitor(const SensorSetup& setup);
+  void store_background(const std::string& calibration_id, const std::vector<float>& depth_m);
+  DriftMonitor::Background stored_background(const std::string& calibration_id);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 

@@ -22,12 +22,13 @@ double seconds_of(Clock::time_point time) {
 }  // namespace
 
 LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-                       std::function<void(const api::PoseReport&)> on_pose, std::unique_ptr<DriftWatch> watch)
+                       std::function<void(const api::PoseReport&)> on_pose,
+                       std::unique_ptr<DriftMonitor> monitor)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
       on_pose_(std::move(on_pose)),
-      monitor_(watch ? std::make_unique<DriftMonitor>(std::move(watch)) : nullptr),
+      monitor_(std::move(monitor)),
       gate_(settings_.gate),
       watch_(settings_.watch) {}
 
@@ -198,9 +199,10 @@ void LiveSensor::tell_of_pose() {
   if (on_pose_) on_pose_(pose());
 }
 
-void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views) {
+void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                          DriftMonitor::Background background) {
   const std::lock_guard lock(mutex_);
-  if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(views));
+  if (monitor_) monitor_->set_pose(known.calibration_id, *known.result.T_base_sensor, std::move(background));
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;

@@ -58,11 +58,11 @@ struct Sighting {
 class LiveSensor {
  public:
   /// `robot` must outlive it.
-  /// `watch`: nothing, or what follows the pose frame by frame.
+  /// `monitor`: nothing, or what follows the pose frame by frame.
   /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
   LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
              std::function<void(const api::PoseReport&)> on_pose = {},
-             std::unique_ptr<DriftWatch> watch = {});
+             std::unique_ptr<DriftMonitor> monitor = {});
   ~LiveSensor();
 
   void start(std::unique_ptr<DepthSource> source);
@@ -78,9 +78,9 @@ class LiveSensor {
 
   const std::string& basis() const { return settings_.basis; }
 
-  /// The pose being served. A stored one is unverified until a check agrees. `views`: those it was just found
-  /// from.
-  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
+  /// The pose being served. A stored one is unverified until a check agrees. `background`: of the pose.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                DriftMonitor::Background background = {});
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
