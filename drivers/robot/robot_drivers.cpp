@@ -39,8 +39,9 @@ constexpr std::array kDrivers{
 std::span<const RobotDriver> robot_drivers() { return kDrivers; }
 
 std::vector<std::string> robot_driver_names() {
-  std::vector<std::string> names;
-  for (const RobotDriver& driver : kDrivers) names.emplace_back(driver.name);
+  std::vector<std::string> names(kDrivers.size());
+  std::ranges::transform(kDrivers, names.begin(),
+                         [](const RobotDriver& driver) { return std::string(driver.name); });
   return names;
 }
 

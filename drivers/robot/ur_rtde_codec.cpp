@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/robot/ur_rtde_codec.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -110,8 +111,8 @@ Status UrRtdeCodec::on_controller_version(std::span<const std::byte> payload, Co
   const auto version = rtde::read_controller_version(payload);
   if (!version) return version.error();
   controller_version_ = version->text();
-  std::vector<std::string_view> names;
-  for (const rtde::Variable variable : rtde::kAllVariables) names.push_back(rtde::name_of(variable));
+  std::array<std::string_view, rtde::kAllVariables.size()> names;
+  std::ranges::transform(rtde::kAllVariables, names.begin(), rtde::name_of);
   ask(rtde::ask_for_outputs(protocol_, settings_.frequency_hz, names), Phase::outputs, output);
   return Done{};
 }

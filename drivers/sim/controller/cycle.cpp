@@ -54,11 +54,12 @@ std::vector<Bytes> joint_messages(const WorldState& world, const ControllerSetti
   const ByteOrder order = settings.big_endian != 0 ? ByteOrder::big : ByteOrder::little;
   if (settings.protocol == ControllerSettings::Protocol::joint_position)
     return {joint_position_message(order, 0, ten(robot))};
-  std::vector<FeedbackRecord> records;
-  for (std::int32_t g = 0; g < settings.groups; ++g)
-    records.push_back(group_record(world, settings, robot, g, now_ns));
-  std::vector<Bytes> messages;
-  for (const auto& record : records) messages.push_back(joint_feedback_message(order, record));
+  std::vector<FeedbackRecord> records(static_cast<std::size_t>(settings.groups));
+  std::vector<Bytes> messages(records.size());
+  for (std::size_t g = 0; g < records.size(); ++g) {
+    records[g] = group_record(world, settings, robot, static_cast<std::int32_t>(g), now_ns);
+    messages[g] = joint_feedback_message(order, records[g]);
+  }
   if (records.size() > 1) messages.push_back(joint_feedback_ex_message(order, records));
   return messages;
 }
