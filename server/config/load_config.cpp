@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "core/robot/nearest_name.hpp"
+#include "drivers/robot/robot_drivers.hpp"
 #include "server/config/config_error.hpp"
 #include "server/config/setting.hpp"
 
@@ -123,6 +124,15 @@ Result<RawEntry> override_entry(const std::string& text) {
   return RawEntry{split_path(key), parse_text_value(text.substr(equals + 1)), "--set " + key};
 }
 
+/// What depends on the driver, where nobody has set it.
+void complete_robot(LoadedConfig& loaded) {
+  RobotConfig& robot = loaded.config.robot;
+  const RobotDriver* driver = find_robot_driver(robot.driver);
+  if (driver == nullptr) return;
+  if (!loaded.origins.contains("robot.port")) robot.port = driver->default_port;
+  if (!loaded.origins.contains("robot.joint_count")) robot.joint_count = driver->max_joints;
+}
+
 Status check_required(const Config& config) {
   for (const auto& setting : settings_table()) {
     if (!setting.required) continue;
@@ -174,6 +184,7 @@ Result<LoadedConfig> load_config(const ConfigSources& sources) {
     if (!entry) return entry.error();
     if (auto status = apply(*entry, loaded); !status) return status.error();
   }
+  complete_robot(loaded);
   if (auto status = check_whole(loaded.config); !status) return status.error();
   return loaded;
 }

@@ -65,6 +65,7 @@ api::HttpServerSettings http_settings(const Config& config) {
 
 StateClientSettings link_settings(const RobotConfig& robot) {
   StateClientSettings settings;
+  settings.driver = robot.driver;
   settings.host = robot.host;
   settings.port = robot.port;
   settings.byte_order =

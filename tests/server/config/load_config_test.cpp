@@ -47,6 +47,23 @@ TEST_F(LoadConfig, TakesDefaultsForWhatTheFileLeavesOut) {
   EXPECT_EQ(loaded->config.robot.port, 50241);
 }
 
+TEST_F(LoadConfig, PortAndJointsThatNobodySetAreThoseOfTheDriver) {
+  const auto rtde = std::string(kSmallest) + "driver = \"ur_rtde\"\n";
+  const auto loaded = load(rtde);
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  EXPECT_EQ(loaded->config.robot.port, 30004);
+  EXPECT_EQ(loaded->config.robot.joint_count, 6);
+  const auto chosen = load(rtde, {"CALIBRD_ROBOT__PORT=31004"}, {"robot.joint_count=5"});
+  ASSERT_TRUE(chosen) << chosen.error().message();
+  EXPECT_EQ(chosen->config.robot.port, 31004);
+  EXPECT_EQ(chosen->config.robot.joint_count, 5);
+}
+
+TEST_F(LoadConfig, AnUnknownDriverIsRefusedWithTheNearestName) {
+  const auto text = failure(std::string(kSmallest) + "driver = \"ur_rtd\"\n");
+  EXPECT_NE(text.find("did you mean 'ur_rtde'"), std::string::npos) << text;
+}
+
 TEST_F(LoadConfig, PathsAreRelativeToTheFile) {
   const auto loaded = load(kSmallest);
   ASSERT_TRUE(loaded);

@@ -74,9 +74,13 @@ TEST(Conversions, LinkKeysReachTheClient) {
   RobotConfig robot;
   robot.host = std::string("h");
   robot.byte_order = std::string("little");
+  robot.driver = "ur_rtde";
+  robot.group = 2;
   robot.link.stale_after = Duration(111);
   robot.link.eviction_pause = Duration(222);
   const auto settings = link_settings(robot);
+  EXPECT_EQ(settings.driver, "ur_rtde");
+  EXPECT_EQ(settings.group, 2);
   EXPECT_EQ(settings.byte_order, simple_message::ByteOrder::little);
   EXPECT_EQ(settings.link.stale_after, Duration(111));
   EXPECT_EQ(settings.link.eviction_pause, Duration(222));
