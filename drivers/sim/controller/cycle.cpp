@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/sim/controller/motion_commands.hpp"
+
 namespace calibrd::sim {
 namespace {
 
 constexpr std::int32_t kPositionValid = 2, kVelocityValid = 4;
 constexpr double kMoving_rad_s = 1e-4;
+constexpr std::int32_t kTeach = 1, kPlay = 2, kSomeAlarm = 4107;
 
 std::int64_t sampled_ns(const ControllerSettings& settings, std::int64_t now_ns) {
   return now_ns - std::llround(settings.latency_s * 1e9);
@@ -38,6 +41,18 @@ bool is_moving(const WorldState& world, std::int64_t now_ns) {
   return std::any_of(v.begin(), v.end(), [](double speed) { return std::abs(speed) > kMoving_rad_s; });
 }
 
+StatusRecord status_record(const WorldState& world, const ControllerSettings& settings, std::int64_t now_ns) {
+  StatusRecord status;
+  status.drives_powered = settings.drives_powered;
+  status.e_stopped = settings.e_stopped;
+  status.in_error = settings.in_error;
+  status.error_code = settings.in_error != 0 ? kSomeAlarm : 0;
+  status.in_motion = is_moving(world, now_ns) || world.motion.commanded.end_ns() > now_ns ? 1 : 0;
+  status.mode = settings.automatic != 0 ? kPlay : kTeach;
+  status.motion_possible = not_ready_subcode(world, settings, now_ns) == 0 ? 1 : 0;
+  return status;
+}
+
 }  // namespace
 
 Joints reported_joints(const WorldState& world, const ControllerSettings& settings, std::int64_t now_ns) {
@@ -60,9 +75,7 @@ std::vector<Bytes> controller_cycle(const WorldState& world, const ControllerSet
     for (const auto& record : records) sends.push_back(joint_feedback_message(order, record));
     if (records.size() > 1) sends.push_back(joint_feedback_ex_message(order, records));
   }
-  StatusRecord status;
-  status.in_motion = is_moving(world, now_ns) ? 1 : 0;
-  sends.push_back(status_message(order, status));
+  sends.push_back(status_message(order, status_record(world, settings, now_ns)));
   return sends;
 }
 

@@ -119,7 +119,7 @@ json::object camera_json(const CameraParameters& c) {
 
 void read_controller(Fields& fields, ControllerSettings& settings) {
   int mode = static_cast<int>(settings.mode), protocol = static_cast<int>(settings.protocol);
-  int order = settings.big_endian;
+  int order = settings.big_endian, pendant = settings.automatic;
   fields.choice("mode", {"normal", "frozen", "status_only", "silent", "refuse"}, mode);
   fields.choice("protocol", {"motoros", "joint_position"}, protocol);
   fields.choice("byte_order", {"little", "big"}, order);
@@ -127,6 +127,12 @@ void read_controller(Fields& fields, ControllerSettings& settings) {
   fields.integer("groups", settings.groups, 1, 4);
   fields.number("rate_hz", settings.rate_hz, 0.1, 1000);
   fields.number("latency_s", settings.latency_s, 0, 10);
+  fields.flag("drives_powered", settings.drives_powered);
+  fields.flag("e_stopped", settings.e_stopped);
+  fields.flag("in_error", settings.in_error);
+  fields.choice("pendant", {"teach", "play"}, pendant);
+  fields.flag("motion_possible", settings.motion_possible);
+  settings.automatic = pendant;
   settings.mode = static_cast<ControllerSettings::Mode>(mode);
   settings.protocol = static_cast<ControllerSettings::Protocol>(protocol);
   settings.big_endian = order;
@@ -140,7 +146,12 @@ json::object controller_json(const ControllerSettings& s) {
           {"send_velocity", s.send_velocity != 0},
           {"groups", s.groups},
           {"rate_hz", s.rate_hz},
-          {"latency_s", s.latency_s}};
+          {"latency_s", s.latency_s},
+          {"drives_powered", s.drives_powered != 0},
+          {"e_stopped", s.e_stopped != 0},
+          {"in_error", s.in_error != 0},
+          {"pendant", s.automatic != 0 ? "play" : "teach"},
+          {"motion_possible", s.motion_possible != 0}};
 }
 
 void read_person(Fields& fields, PersonState& person, std::int64_t now_ns) {

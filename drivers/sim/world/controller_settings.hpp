@@ -25,6 +25,12 @@ struct ControllerSettings {
   std::int32_t groups = 1;  ///< 1 to 4; the second is the other robot, the rest stand at 0
   double rate_hz = 40;
   double latency_s = 0.010;  ///< age of the joints when they are sent
+  // What STATUS says, and what the motion port obeys only then.
+  std::int32_t drives_powered = 1;
+  std::int32_t e_stopped = 0;
+  std::int32_t in_error = 0;
+  std::int32_t automatic = 1;        ///< the pendant: 1 PLAY, 0 teach
+  std::int32_t motion_possible = 1;  ///< the ROS job runs; it does not while the robot has a program of its own
 };
 
 }  // namespace calibrd::sim
