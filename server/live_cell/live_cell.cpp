@@ -18,6 +18,7 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
+      motions_(settings_.motion, robot_, log_.on_motion),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
       jobs_(
@@ -80,6 +81,7 @@ void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> 
 
 void LiveCell::request_stop() {
   is_stopping_ = true;
+  motions_.request_stop();
   for (const auto& [id, entry] : entries_) {
     entry->sensor->request_stop();
     const std::lock_guard lock(entry->recording);
@@ -197,7 +199,14 @@ Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& 
   auto suggestion = suggest_posture(virtual_cell_, (*entry)->setup.camera, evidence->T_base_sensor,
                                     evidence->covariance, evidence->postures, planning);
   if (!suggestion) return fail(ApiError::no_posture, request.sensor_id);
+  motions_.remember(request.sensor_id, *suggestion);
   return *std::move(suggestion);
+}
+
+Result<api::MotionReport> LiveCell::start_motion(const api::MotionRequest& request) {
+  if (!request.next_posture_of.empty())
+    if (const auto entry = find(request.next_posture_of); !entry) return entry.error();
+  return motions_.start(request);
 }
 
 Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequest& request) {

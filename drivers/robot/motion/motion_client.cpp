@@ -41,6 +41,10 @@ void MotionClient::feed(const Told& told) {
   if (machine_) obey(machine_->on_watch(Clock::now()));
 }
 
+void MotionClient::take(const ControllerJoints& joints) { feed(joints); }
+void MotionClient::take(const ControllerStatus& status) { feed(status); }
+void MotionClient::take(const RobotLinkHealth& health) { feed(health); }
+
 std::optional<Error> MotionClient::doubt() const {
   const std::lock_guard lock(mutex_);
   return watch_.doubt_before_start(Clock::now());

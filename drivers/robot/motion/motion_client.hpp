@@ -37,9 +37,9 @@ class MotionClient : public RobotMover, public std::enable_shared_from_this<Moti
  public:
   MotionClient(const boost::asio::any_io_executor& executor, MotionClientSettings settings);
 
-  void take(const ControllerJoints& joints) { feed(joints); }
-  void take(const ControllerStatus& status) { feed(status); }
-  void take(const RobotLinkHealth& health) { feed(health); }
+  void take(const ControllerJoints& joints);
+  void take(const ControllerStatus& status);
+  void take(const RobotLinkHealth& health);
 
   std::optional<Error> doubt() const override;
   Status start(MotionOrder order, MotionEvents events) override;
