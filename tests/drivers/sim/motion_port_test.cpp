@@ -121,7 +121,7 @@ TEST_F(MotionPort, ARobotWithAProgramOfItsOwnTakesNoCommandsUntilItIsHeld) {
   EXPECT_EQ(point(0, 0, here).result, 0);
   EXPECT_EQ(point(1, 0.2, here + 0.01).result, 0);
   now_ns_ += 500 * kMs;
-  world_.motion.visit(std::array{Joints{0.5, 0.2}}, Profile::minimum_jerk, 0.5, 1, now_ns_);
+  world_.motion.visit(std::vector<Joints>{{0.5, 0.2}}, Profile::minimum_jerk, 0.5, 1, now_ns_);
   EXPECT_NEAR(first_joint(), here + 0.01, 1e-9) << "its own program begins where the commands left it";
 }
 
