@@ -21,7 +21,9 @@ BELOW_TABLE_DEG = [[20, 105, 0, 60, 0, 60, 0]]
 
 class Motion(CellTest):
     def cell(self, *settings: str):
-        """A robot at rest, and a daemon that may move it."""
+        """A robot at rest, and a daemon that may move it; those before them end."""
+        self.end_programs()
+        self.programs.clear()
         simulator = self.simulate()
         simulator.tell("PUT", "/motion", mode="postures", postures_rad=HERE_RAD, speed_rad_s=3)
         wait_until("the robot is there", lambda: self.distance(simulator, HERE_RAD) < 1e-6)
@@ -135,8 +137,6 @@ class Motion(CellTest):
                 self.expect_standing(simulator)
                 self.assertEqual(self.motion(simulator)["commands"].get(STOP), 1)
                 self.refused(daemon, 409, "motion_not_possible", route="tour")
-                self.end_programs()
-                self.programs.clear()
 
     def test_a_state_link_that_dies_or_freezes_stops_it(self):
         for mode, message in (("refuse", "link"), ("silent", "no fresh"), ("status_only", "no fresh joint"),
@@ -148,8 +148,6 @@ class Motion(CellTest):
                 simulator.controller_mode(mode)
                 self.assertIn(message, self.wait_ended(daemon, location, "failed", 5)["message"])
                 self.expect_stopped_by_calibrd(simulator)
-                self.end_programs()
-                self.programs.clear()
 
     def test_the_end_of_the_daemon_stops_it_kindly_and_its_death_stops_it_too(self):
         for kill in (False, True):
@@ -164,8 +162,6 @@ class Motion(CellTest):
                 else:
                     self.assertLess(daemon.stop(), 1.5)
                     self.expect_stopped_by_calibrd(simulator)
-                self.end_programs()
-                self.programs.clear()
 
     def test_another_client_of_the_motion_port_ends_it(self):
         simulator, daemon = self.cell("motion.hold=20s")

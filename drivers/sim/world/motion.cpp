@@ -46,6 +46,13 @@ double MotionProgram::cycle_s() const {
   return sum;
 }
 
+bool MotionProgram::is_over(double program_s) const {
+  if (loop_from + 1 < posture_count) return false;
+  double end_s = 0;
+  for (int i = 0; i < loop_from; ++i) end_s += duration_s(i, after(i)) + hold_s;
+  return program_s >= end_s;
+}
+
 Joints MotionProgram::at(double program_s) const {
   if (posture_count == 0) return {};
   const double cycle = cycle_s();
@@ -114,7 +121,7 @@ void MotionPlan::place(const Joints& posture, std::int64_t now_ns) {
 bool MotionPlan::is_running(std::int64_t now_ns) const {
   if (commanded.count > 0) return false;
   const bool rests = next.clock.rate_to == 0 && next.clock.rate_at(now_ns) == 0;
-  return now_ns < switch_ns || (next.program.posture_count > 1 && !rests);
+  return now_ns < switch_ns || (!rests && !next.program.is_over(next.clock.time_at(now_ns)));
 }
 
 /// Where the motion port has left the robot, its own programs begin.

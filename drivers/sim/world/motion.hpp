@@ -29,6 +29,9 @@ struct MotionProgram {
   /// Where the robot is, `program_s` seconds after the start (>= 0).
   Joints at(double program_s) const;
 
+  /// It is where it stays: one posture in the end, and that is reached.
+  bool is_over(double program_s) const;
+
  private:
   double duration_s(int from, int to) const;
   int after(int posture) const { return posture + 1 < posture_count ? posture + 1 : loop_from; }

@@ -123,6 +123,9 @@ TEST_F(MotionPort, ARobotWithAProgramOfItsOwnTakesNoCommandsUntilItIsHeld) {
   now_ns_ += 500 * kMs;
   world_.motion.visit(std::vector<Joints>{{0.5, 0.2}}, Profile::minimum_jerk, 0.5, 1, now_ns_);
   EXPECT_NEAR(first_joint(), here + 0.01, 1e-9) << "its own program begins where the commands left it";
+  EXPECT_EQ(command(200101).subcode, 5009);
+  now_ns_ += 20'000 * kMs;
+  EXPECT_EQ(command(200101).result, 0) << "a program of one posture is over when that is reached";
 }
 
 TEST_F(MotionPort, StatusSaysWhatTheSettingsSay) {
