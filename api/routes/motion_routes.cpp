@@ -60,7 +60,8 @@ Result<MotionRequest> read_motion_request(const Request& request) {
   if (!sensor) return sensor.error();
   if (route->has_value() == sensor->has_value())
     return fail(ApiError::bad_value, "either route or next_posture_of is wanted");
-  if (*route && body->contains("approve")) return fail(ApiError::bad_value, "approve belongs to next_posture_of");
+  if (*route && body->contains("approve"))
+    return fail(ApiError::bad_value, "approve belongs to next_posture_of");
   if (*route) return MotionRequest{**route, {}, {}};
   const auto approved = read_approved(*body);
   if (!approved) return approved.error();
@@ -87,13 +88,14 @@ Response answer_one(const Request& request, const Result<MotionReport>& motion) 
 
 /// Stopping must never wait behind anything slow: it is made on the network thread.
 void add_motion_routes(Router& router, CellService& service) {
-  router.add("POST", "/api/v1/robot/motions", Cost::slow, [&service](const Request& request, const PathValues&) {
-    return answer_start(request, service);
-  });
-  router.add("GET", "/api/v1/robot/motions", Cost::quick, [&service](const Request& request, const PathValues&) {
-    if (auto unknown = unknown_query(request, {})) return problem(*unknown);
-    return json_response(200, motions_json(service.motions()));
-  });
+  router.add(
+      "POST", "/api/v1/robot/motions", Cost::slow,
+      [&service](const Request& request, const PathValues&) { return answer_start(request, service); });
+  router.add("GET", "/api/v1/robot/motions", Cost::quick,
+             [&service](const Request& request, const PathValues&) {
+               if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+               return json_response(200, motions_json(service.motions()));
+             });
   router.add("GET", "/api/v1/robot/motions/{id}", Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                return answer_one(request, service.motion(values[0]));

@@ -46,9 +46,9 @@ class CellService {
 
   /// Moves the robot; only where the configuration allows it, and nothing speaks against it.
   virtual Result<MotionReport> start_motion(const MotionRequest& request) = 0;
-  virtual MotionsReport motions() const = 0;                               ///< quick
-  virtual Result<MotionReport> motion(std::string_view id) const = 0;      ///< quick
-  virtual Result<MotionReport> stop_motion(std::string_view id) = 0;       ///< quick
+  virtual MotionsReport motions() const = 0;                           ///< quick
+  virtual Result<MotionReport> motion(std::string_view id) const = 0;  ///< quick
+  virtual Result<MotionReport> stop_motion(std::string_view id) = 0;   ///< quick
 };
 
 }  // namespace calibrd::api

@@ -11,8 +11,8 @@ namespace calibrd::api {
 
 /// Either `route` or `next_posture_of` with `approved_rad` is set.
 struct MotionRequest {
-  std::string route;            ///< a list of postures of the configuration
-  std::string next_posture_of;  ///< sensor whose suggested posture is to be taken …
+  std::string route;                 ///< a list of postures of the configuration
+  std::string next_posture_of;       ///< sensor whose suggested posture is to be taken …
   std::vector<double> approved_rad;  ///< … and the positions that whoever asks has seen and approves
 };
 
@@ -33,8 +33,8 @@ struct MotionReport {
 
 struct MotionsReport {
   bool enabled = false;
-  std::string hindrance;            ///< why no motion could be started now; empty: one could
-  std::vector<std::string> routes;  ///< names
+  std::string hindrance;              ///< why no motion could be started now; empty: one could
+  std::vector<std::string> routes;    ///< names
   std::vector<MotionReport> motions;  ///< newest first; since the daemon was started
 };
 

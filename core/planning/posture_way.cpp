@@ -34,8 +34,8 @@ std::optional<std::string> limit_objection(const RobotModel& robot, const std::v
     const double position = posture[static_cast<std::size_t>(joint.position_index)];
     if (position >= joint.limits->lower && position <= joint.limits->upper) continue;  // NaN is outside
     char text[96];
-    std::snprintf(text, sizeof text, " at %.2f deg is beyond its limits %.2f to %.2f deg", position * kDegPerRad,
-                  joint.limits->lower * kDegPerRad, joint.limits->upper * kDegPerRad);
+    std::snprintf(text, sizeof text, " at %.2f deg is beyond its limits %.2f to %.2f deg",
+                  position * kDegPerRad, joint.limits->lower * kDegPerRad, joint.limits->upper * kDegPerRad);
     return joint.name + text;
   }
   return std::nullopt;

@@ -33,8 +33,8 @@ Result<std::vector<double>> JointMapping::velocities(std::span<const double> con
 Result<std::vector<double>> JointMapping::controller_values(std::span<const double> joints,
                                                             std::vector<double> controller) const {
   if (controller.size() < values_read_ || joints.size() != rows_.size())
-    return Error{JointMappingError::too_few_values, std::to_string(joints.size()) + " joints, " +
-                                                        std::to_string(controller.size()) + " values"};
+    return Error{JointMappingError::too_few_values,
+                 std::to_string(joints.size()) + " joints, " + std::to_string(controller.size()) + " values"};
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
     const double factor = row.terms.front().factor;

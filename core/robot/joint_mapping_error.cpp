@@ -35,7 +35,8 @@ const char* text(JointMappingError code) {
              "list the "
              "joints from base to tool, the elbow axis E third";
     case JointMappingError::not_invertible:
-      return "its controller axis is scaled or coupled, so the robot cannot be commanded; switch motion.enabled off";
+      return "its controller axis is scaled or coupled, so the robot cannot be commanded; switch "
+             "motion.enabled off";
   }
   return "unknown joint mapping error";
 }

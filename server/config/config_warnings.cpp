@@ -29,9 +29,8 @@ std::vector<std::string> config_warnings(const Config& config) {
   }
   const bool is_open = config.server.address != "127.0.0.1" && config.server.address != "::1";
   if (config.motion.enabled && is_open)
-    warnings.push_back(
-        "motion.enabled with server.address = \"" + config.server.address +
-        "\": the HTTP interface has no users, so whoever reaches the port can move the robot");
+    warnings.push_back("motion.enabled with server.address = \"" + config.server.address +
+                       "\": the HTTP interface has no users, so whoever reaches the port can move the robot");
   return warnings;
 }
 

@@ -17,7 +17,8 @@ constexpr double kFarthest_deg = 720;
 Result<std::vector<double>> read_posture(const Kind<double>& angle, const RawValue& raw) {
   const auto* list = std::get_if<std::vector<RawValue>>(&raw.data);
   if (!list || list->empty())
-    return Error{ConfigError::bad_value, "each posture is a list of joint positions; write [[0, 20, …], [10, 25, …]]"};
+    return Error{ConfigError::bad_value,
+                 "each posture is a list of joint positions; write [[0, 20, …], [10, 25, …]]"};
   std::vector<double> posture;
   for (const auto& element : *list) {
     const auto value = angle.read(element);
@@ -33,7 +34,8 @@ Kind<Postures> postures() {
           [angle](const RawValue& raw) -> Result<Postures> {
             const auto* list = std::get_if<std::vector<RawValue>>(&raw.data);
             if (!list || list->empty())
-              return Error{ConfigError::bad_value, "a list of postures is wanted; write [[0, 20, …], [10, 25, …]]"};
+              return Error{ConfigError::bad_value,
+                           "a list of postures is wanted; write [[0, 20, …], [10, 25, …]]"};
             Postures all;
             for (const auto& element : *list) {
               auto posture = read_posture(angle, element);
@@ -71,7 +73,8 @@ void declare_motion(std::vector<Setting>& table) {
       "Lets calibrd move the robot when it is asked to. While false the motion port is never opened. Read "
       "docs/motion.md first.");
   key("port", &MotionConfig::port, integer(1, 65535), "",
-      "Motion port of the controller (MotoROS 50240). Connecting there throws out whoever controls the robot.");
+      "Motion port of the controller (MotoROS 50240). Connecting there throws out whoever controls the "
+      "robot.");
   key("max_speed_deg_s", &MotionConfig::max_speed_deg_s, real(0.1, 20), "deg/s",
       "No joint is commanded faster.");
   key("max_acceleration_deg_s2", &MotionConfig::max_acceleration_deg_s2, real(0.5, 60), "deg/s²",

@@ -18,7 +18,9 @@ namespace {
 constexpr std::chrono::milliseconds kFarewell{500};
 constexpr std::chrono::milliseconds kPause{5};
 
-Error at(const std::string& key, const std::string& why) { return {ConfigError::bad_value, key + ": " + why}; }
+Error at(const std::string& key, const std::string& why) {
+  return {ConfigError::bad_value, key + ": " + why};
+}
 
 Status check_postures(const std::string& route, const MotionRouteConfig& config, const RobotModel& model) {
   const std::string key = "motion.routes." + route + ".postures_deg";
@@ -74,8 +76,9 @@ Status check_motion(const Config& config, const RobotModel& model, const JointMa
   for (const auto& joint : model.joints())
     if (joint.position_index >= 0 && joint.type == JointType::prismatic)
       return at("motion.enabled", joint.name + " slides, and only robots whose joints all turn can be moved");
-  const auto values = mapping.controller_values(std::vector<double>(model.position_count()),
-                                                std::vector<double>(static_cast<std::size_t>(config.robot.joint_count)));
+  const auto values =
+      mapping.controller_values(std::vector<double>(model.position_count()),
+                                std::vector<double>(static_cast<std::size_t>(config.robot.joint_count)));
   if (!values) return Error{values.error().code, "motion.enabled: " + values.error().detail};
   return check(motion_client_settings(config));
 }

@@ -31,8 +31,8 @@ class MotionLink {
   std::shared_ptr<MotionClient> client_;
 };
 
-/// The configured routes fit the model, and the robot can be commanded through this mapping. The error names the
-/// key or route at fault.
+/// The configured routes fit the model, and the robot can be commanded through this mapping. The error names
+/// the key or route at fault.
 Status check_motion(const Config& config, const RobotModel& model, const JointMapping& mapping);
 
 }  // namespace calibrd

@@ -117,7 +117,7 @@ class LiveCell : public api::CellService {
   std::atomic<bool> is_stopping_{false};
   const std::string robot_basis_;
   LiveRobot robot_;
-  mutable RobotMotions motions_;  // hears of every posture that is suggested
+  mutable RobotMotions motions_;    // hears of every posture that is suggested
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started

@@ -40,8 +40,8 @@ class LiveRobot {
 
   const RobotModel& model() const { return model_; }
   std::optional<JointState> newest_joints() const;
-  /// What the controller is at when the model is at these positions; values of axes that move no joint are the
-  /// newest. Errors: JointMappingError.
+  /// What the controller is at when the model is at these positions; values of axes that move no joint are
+  /// the newest. Errors: JointMappingError.
   Result<std::vector<double>> controller_values(std::span<const double> positions_rad) const;
 
   /// Joints are there and fresh.

@@ -63,8 +63,7 @@ Result<MotionReport> RobotMotions::start(const api::MotionRequest& request) {
   auto order = make_order(*postures);
   if (!order) return order.error();
   const auto id = add_report(request, postures->size());
-  if (const auto begun = mover->start(*std::move(order), events_of(id)); !begun)
-    end(id, {begun.error()});
+  if (const auto begun = mover->start(*std::move(order), events_of(id)); !begun) end(id, {begun.error()});
   const auto report = find(id);
   if (report->status == MotionStatus::failed) return fail(ApiError::motion_not_possible, report->message);
   return report;
@@ -124,8 +123,9 @@ std::string RobotMotions::add_report(const api::MotionRequest& request, std::siz
   reports_.push_front(report);
   if (reports_.size() > kRemembered) reports_.pop_back();
   log_("robot motion " + report.id + ": begins, " +
-           (request.route.empty() ? "to the posture suggested for sensor " + request.next_posture_of + " and approved"
-                                  : "along the route " + request.route),
+           (request.route.empty()
+                ? "to the posture suggested for sensor " + request.next_posture_of + " and approved"
+                : "along the route " + request.route),
        true);
   return report.id;
 }

@@ -25,8 +25,8 @@ struct RobotMotionSettings {
   std::map<std::string, std::vector<std::vector<double>>> routes_rad;  ///< name -> postures, model's order
 };
 
-/// Motions that somebody asks for: one at a time, each checked against the model before it begins, each command
-/// logged. Nothing moves without a mover. Safe to call from any thread. Errors: api::ApiError.
+/// Motions that somebody asks for: one at a time, each checked against the model before it begins, each
+/// command logged. Nothing moves without a mover. Safe to call from any thread. Errors: api::ApiError.
 class RobotMotions {
  public:
   /// One line about a motion; `is_well` false: it ended otherwise than it should.

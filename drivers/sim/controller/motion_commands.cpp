@@ -13,8 +13,8 @@ constexpr std::int32_t kCheckReady = 200101, kCheckQueue = 200102, kStop = 20011
 constexpr std::int32_t kSuccess = 0, kBusy = 1, kFailure = 2, kInvalid = 3, kNotReady = 5;
 constexpr std::int32_t kWrongGroup = 3004, kWrongSequence = 3005, kWrongCommand = 3006, kWrongStart = 3011,
                        kTooFast = 3013, kDataMissing = 3015;
-constexpr std::int32_t kAlarm = 5001, kEmergencyStop = 5003, kNotPlay = 5004, kServoOff = 5006, kNotStarted = 5008,
-                       kNotWaiting = 5009;
+constexpr std::int32_t kAlarm = 5001, kEmergencyStop = 5003, kNotPlay = 5004, kServoOff = 5006,
+                       kNotStarted = 5008, kNotWaiting = 5009;
 constexpr std::int32_t kTimePositionVelocity = 7;
 constexpr double kStartTolerance_rad = 5e-4;  // 30 pulses of about 1000 per degree
 constexpr double kFastest_rad_s = 3.5;
@@ -65,10 +65,10 @@ Outcome take_point(const MotionRequest& request, double& last_point_s, WorldStat
   if (const auto subcode = not_ready_subcode(world, settings, now_ns)) return {kNotReady, subcode};
   if (request.group != 0) return {kInvalid, kWrongGroup};
   if (request.sequence < 0) return {kInvalid, kWrongSequence};
-  if ((request.valid_fields & kTimePositionVelocity) != kTimePositionVelocity) return {kInvalid, kDataMissing};
-  const Outcome outcome = request.sequence == 0
-                              ? begin(request, world, now_ns)
-                              : add(request, request.time_s - last_point_s, world, now_ns);
+  if ((request.valid_fields & kTimePositionVelocity) != kTimePositionVelocity)
+    return {kInvalid, kDataMissing};
+  const Outcome outcome = request.sequence == 0 ? begin(request, world, now_ns)
+                                                : add(request, request.time_s - last_point_s, world, now_ns);
   if (outcome.result == kSuccess) last_point_s = request.time_s;
   return outcome;
 }
@@ -103,7 +103,8 @@ bool has_queue(const WorldState& world, std::int64_t now_ns) {
   return world.motion.commanded.count > 0 && world.motion.commanded.end_ns() > now_ns;
 }
 
-std::int32_t not_ready_subcode(const WorldState& world, const ControllerSettings& settings, std::int64_t now_ns) {
+std::int32_t not_ready_subcode(const WorldState& world, const ControllerSettings& settings,
+                               std::int64_t now_ns) {
   if (settings.in_error != 0) return kAlarm;
   if (settings.e_stopped != 0) return kEmergencyStop;
   if (settings.automatic == 0) return kNotPlay;

@@ -11,7 +11,8 @@
 namespace calibrd::sim {
 
 /// Why the controller takes no motion now, as MotoROS numbers it; 0: it does.
-std::int32_t not_ready_subcode(const WorldState& world, const ControllerSettings& settings, std::int64_t now_ns);
+std::int32_t not_ready_subcode(const WorldState& world, const ControllerSettings& settings,
+                               std::int64_t now_ns);
 
 /// The motion port of MotoROS 1, from request to answer, without sockets: what a command does to the robot.
 class MotionCommands {
@@ -22,7 +23,8 @@ class MotionCommands {
   };
 
   /// Changes `world` and, where trajectory mode begins or ends, `settings`.
-  Answer obey(const MotionRequest& request, WorldState& world, ControllerSettings& settings, std::int64_t now_ns);
+  Answer obey(const MotionRequest& request, WorldState& world, ControllerSettings& settings,
+              std::int64_t now_ns);
 
   /// How often each command came; 14: trajectory points.
   const std::map<std::int32_t, std::int32_t>& counts() const { return counts_; }

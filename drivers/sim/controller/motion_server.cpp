@@ -32,7 +32,8 @@ Status MotionServer::listen(std::uint16_t port) {
   if (!failed) acceptor_.bind(endpoint, failed);
   if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
   if (failed)
-    return sim_error(SimError::cannot_listen, "motion port " + std::to_string(port) + " (" + failed.message() + ")");
+    return sim_error(SimError::cannot_listen,
+                     "motion port " + std::to_string(port) + " (" + failed.message() + ")");
   port_ = acceptor_.local_endpoint().port();
   accept_next();
   return Done{};

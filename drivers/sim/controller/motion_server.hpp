@@ -16,8 +16,8 @@
 namespace calibrd::sim {
 
 /// The motion port of the simulated controller: a TCP server on 127.0.0.1 that takes MotoROS's commands, in
-/// pieces of any size, and moves the robot. One client: a second one takes its place unless points are queued,
-/// then it is turned away. Without a client the robot stops. One thread, as ControllerServer.
+/// pieces of any size, and moves the robot. One client: a second one takes its place unless points are
+/// queued, then it is turned away. Without a client the robot stops. One thread, as ControllerServer.
 class MotionServer {
  public:
   struct WorldAccess {

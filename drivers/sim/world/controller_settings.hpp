@@ -29,8 +29,9 @@ struct ControllerSettings {
   std::int32_t drives_powered = 1;
   std::int32_t e_stopped = 0;
   std::int32_t in_error = 0;
-  std::int32_t automatic = 1;        ///< the pendant: 1 PLAY, 0 teach
-  std::int32_t motion_possible = 1;  ///< the ROS job runs; it does not while the robot has a program of its own
+  std::int32_t automatic = 1;  ///< the pendant: 1 PLAY, 0 teach
+  std::int32_t motion_possible =
+      1;  ///< the ROS job runs; it does not while the robot has a program of its own
 };
 
 }  // namespace calibrd::sim

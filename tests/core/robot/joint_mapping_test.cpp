@@ -158,7 +158,8 @@ TEST(JointMapping, TheWayBackGivesWhatTheControllerSends) {
 TEST(JointMapping, ThereIsNoWayBackOverScaledOrCoupledAxes) {
   const std::vector<std::string> joints{"a", "b"};
   JointMappingConfig scaled;
-  scaled.joints = {{.joint = "a", .axis = 0, .scale = 2, .coupling = {}}, {.joint = "b", .axis = 1, .coupling = {}}};
+  scaled.joints = {{.joint = "a", .axis = 0, .scale = 2, .coupling = {}},
+                   {.joint = "b", .axis = 1, .coupling = {}}};
   auto coupled = scaled;
   coupled.joints[0].scale = 1;
   coupled.joints[1].coupling = {{0, 1.0}};

@@ -20,11 +20,13 @@ class MotionPort : public testing::Test {
     world_.motion.place(Joints{0.1, 0.2}, now_ns_);
   }
   MotionReplyRecord command(std::int32_t command) {
-    return commands_.obey({MotionRequest::kControl, 0, 5, command, 0, 0, {}, {}}, world_, settings_, now_ns_).reply;
+    return commands_.obey({MotionRequest::kControl, 0, 5, command, 0, 0, {}, {}}, world_, settings_, now_ns_)
+        .reply;
   }
   MotionReplyRecord point(std::int32_t sequence, double time_s, double first, double speed = 0) {
     return commands_
-        .obey({MotionRequest::kPoint, 0, sequence, 0, 15, time_s, {first, 0.2}, {speed, 0}}, world_, settings_, now_ns_)
+        .obey({MotionRequest::kPoint, 0, sequence, 0, 15, time_s, {first, 0.2}, {speed, 0}}, world_,
+              settings_, now_ns_)
         .reply;
   }
   double first_joint() const { return world_.motion.positions_at(now_ns_)[0]; }
