@@ -3,7 +3,6 @@
 #pragma once
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "server/config/kinds.hpp"
@@ -49,5 +48,9 @@ class SectionDeclarer {
   std::vector<std::string> path_;
   Pick<Section> pick_;
 };
+
+// Parts of the table in files of their own.
+void declare_drift(std::vector<Setting>& table);
+void declare_motion(std::vector<Setting>& table);
 
 }  // namespace calibrd

@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/kinds.hpp"
-#include "server/config/motion_settings.hpp"
 #include "server/config/section_declarer.hpp"
-#include "server/config/setting.hpp"
 
 namespace calibrd {
 namespace {
@@ -221,6 +218,7 @@ std::vector<Setting> build_table() {
   declare_sensors(table);
   declare_workspace(table);
   declare_pose(table);
+  declare_drift(table);
   declare_calibration(table);
   declare_motion(table);
   declare_rest(table);

@@ -22,6 +22,7 @@ MotionClientSettings motion_client_settings(const Config& config);
 SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor);
 RobotMotionSettings motion_settings(const MotionConfig& motion);
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor);
+DriftSettings drift_settings(const DriftConfig& drift);
 LiveCellSettings cell_settings(const Config& config, const std::string& version);
 
 /// Joints that the configuration does not name follow the controller's value at their own place in the model.

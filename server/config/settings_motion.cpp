@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/motion_settings.hpp"
-
 #include "server/config/config_error.hpp"
 #include "server/config/section_declarer.hpp"
 
