@@ -225,12 +225,6 @@ Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& 
   return *std::move(suggestion);
 }
 
-Result<api::MotionReport> LiveCell::start_motion(const api::MotionRequest& request) {
-  if (!request.next_posture_of.empty())
-    if (const auto entry = find(request.next_posture_of); !entry) return entry.error();
-  return motions_.start(request);
-}
-
 Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequest& request) {
   auto collector = settings_.jobs.collector;
   collector.postures = request.postures;

@@ -92,7 +92,9 @@ class LiveCell : public api::CellService {
   Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
-  Result<api::MotionReport> start_motion(const api::MotionRequest& request) override;
+  Result<api::MotionReport> start_motion(const api::MotionRequest& request) override {
+    return motions_.start(request);
+  }
   api::MotionsReport motions() const override { return motions_.list(); }
   Result<api::MotionReport> motion(std::string_view id) const override { return motions_.find(id); }
   Result<api::MotionReport> stop_motion(std::string_view id) override { return motions_.stop(id); }

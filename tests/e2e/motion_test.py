@@ -139,14 +139,14 @@ class Motion(CellTest):
                 self.refused(daemon, 409, "motion_not_possible", route="tour")
 
     def test_a_state_link_that_dies_or_freezes_stops_it(self):
-        for mode, message in (("refuse", "link"), ("silent", "no fresh"), ("status_only", "no fresh joint"),
-                              ("frozen", "commanded path")):
+        for mode, message in (("refuse", "link"), ("silent", "sends nothing|no fresh"),
+                              ("status_only", "no joint positions|no fresh joint"), ("frozen", "commanded path")):
             with self.subTest(mode=mode):
                 simulator, daemon = self.cell()
                 location = self.start(daemon, route="far")
                 self.wait_under_way(simulator)
                 simulator.controller_mode(mode)
-                self.assertIn(message, self.wait_ended(daemon, location, "failed", 5)["message"])
+                self.assertRegex(self.wait_ended(daemon, location, "failed", 5)["message"], message)
                 self.expect_stopped_by_calibrd(simulator)
 
     def test_the_end_of_the_daemon_stops_it_kindly_and_its_death_stops_it_too(self):
@@ -176,10 +176,9 @@ class Motion(CellTest):
         self.assertIn("below the table", self.refused(daemon, 409, "way_refused", route="low")["detail"])
         self.refused(daemon, 404, "no_such_motion_route", route="nowhere")
         self.refused(daemon, 409, "posture_not_suggested", next_posture_of=SENSOR, approve=HERE_RAD)
-        self.refused(daemon, 404, "no_such_sensor", next_posture_of="nobody", approve=HERE_RAD)
         self.refused(daemon, 400, "bad_value")
         simulator.tell("PUT", "/motion", mode="jog", speed_rad_s=0.2)
-        wait_until("it is seen to move", lambda: "ROS job" in daemon.json("/api/v1/robot/motions")["hindrance"])
+        wait_until("it is seen to move", lambda: "ROS job" in (daemon.json("/api/v1/robot/motions")["hindrance"] or ""))
         self.refused(daemon, 409, "motion_not_possible", route="tour")
         self.assertEqual(self.motion(simulator)["accepted"], 0)
 

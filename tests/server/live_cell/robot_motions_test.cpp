@@ -154,7 +154,7 @@ TEST_F(RobotMotionsTest, WithoutAMoverNothingMovesEither) {
 TEST_F(RobotMotionsTest, OnlyThePostureLastSuggestedForThatSensorCanBeApproved) {
   auto& motions = cell_->robot_motions();
   const std::vector<double> first{0.3, 0.1}, second{0.4, 0.2};
-  EXPECT_EQ(refusal_of({{}, "nobody", first}), ApiError::no_such_sensor);
+  EXPECT_EQ(refusal_of({{}, "nobody", first}), ApiError::posture_not_suggested);
   EXPECT_EQ(refusal_of({{}, "eye", first}), ApiError::posture_not_suggested);
   PostureSuggestion suggestion;
   suggestion.positions_rad = first;
