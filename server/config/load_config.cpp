@@ -68,6 +68,7 @@ Status enter_section(const RawEntry& entry, Config& config) {
     return unknown_key(entry);
   if (path.size() == 2 && path[0] == "sensors") config.sensors[path[1]];
   if (path.size() == 3 && path[1] == "joints") config.robot.joints[path[2]];
+  if (path.size() == 3 && path[1] == "routes") config.motion.routes[path[2]];
   return Done{};
 }
 
@@ -96,6 +97,7 @@ void restore_case(std::vector<std::string>& path, const Config& config) {
   };
   if (path.size() > 1 && path[0] == "sensors") restore(path[1], config.sensors);
   if (path.size() > 2 && path[0] == "robot" && path[1] == "joints") restore(path[2], config.robot.joints);
+  if (path.size() > 2 && path[0] == "motion" && path[1] == "routes") restore(path[2], config.motion.routes);
 }
 
 /// The entry of "CALIBRD_SECTION__KEY=value"; nothing for any other variable.

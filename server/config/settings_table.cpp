@@ -223,6 +223,7 @@ std::vector<Setting> build_table() {
   declare_pose(table);
   declare_drift(table);
   declare_calibration(table);
+  declare_motion(table);
   declare_rest(table);
   return table;
 }

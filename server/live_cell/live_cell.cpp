@@ -17,6 +17,7 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
+      motions_(settings_.motion, robot_, log_.on_motion),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
       jobs_(
@@ -107,6 +108,7 @@ void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> 
 
 void LiveCell::request_stop() {
   is_stopping_ = true;
+  motions_.request_stop();
   for (const auto& [id, entry] : entries_) {
     entry->sensor->request_stop();
     const std::lock_guard lock(entry->recording);

@@ -41,6 +41,7 @@ Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& 
   auto suggestion = suggest_posture(virtual_cell_, (*entry)->setup.camera, evidence->T_base_sensor,
                                     evidence->covariance, evidence->postures, planning);
   if (!suggestion) return fail(ApiError::no_posture, request.sensor_id);
+  motions_.remember(request.sensor_id, *suggestion);
   return *std::move(suggestion);
 }
 

@@ -102,6 +102,7 @@ class Simulator(Program):
             raise AssertionError(f"the simulator ended:\n{self.output()}")
         ports = dict(word.split("=") for word in ready.read_text().split()[1:])
         self.controller_port = int(ports["controller"].split(":")[1])
+        self.motion_port = int(ports["motion"].split(":")[1])
         self.control_port = int(ports["control"].split(":")[1])
 
     def tell(self, method: str, path: str, **body) -> dict:

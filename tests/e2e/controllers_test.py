@@ -135,10 +135,10 @@ class Controllers(CellTest):
         daemon, simulator = self.run_make("universal_robots")
         controller = daemon.robot()["controller"]
         self.assertEqual((controller["drives_powered"], controller["motion_possible"]), (True, True))
-        simulator.tell("PUT", "/controller", emergency_stop=True)
+        simulator.tell("PUT", "/controller", e_stopped=True)
         wait_until("the emergency stop is seen", lambda: daemon.robot()["controller"]["e_stopped"])
         wait_until("no power on the arm is the reason", lambda: "power" in (daemon.robot()["link"]["reason"] or ""))
-        simulator.tell("PUT", "/controller", emergency_stop=False, rtde_protocol=1)
+        simulator.tell("PUT", "/controller", e_stopped=False, rtde_protocol=1)
         simulator.tell("POST", "/controller/drop", how="fin")
         self.expect_true_joints("universal_robots", daemon, simulator, STILL)
         simulator.controller_mode("frozen")

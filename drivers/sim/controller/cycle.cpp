@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/sim/controller/motion_commands.hpp"
+
 namespace calibrd::sim {
 namespace {
 
 constexpr std::int32_t kPositionValid = 2, kVelocityValid = 4;
 constexpr double kMoving_rad_s = 1e-4;
+constexpr std::int32_t kTeach = 1, kPlay = 2, kSomeAlarm = 4107;
 
 std::int64_t sampled_ns(const ControllerSettings& settings, std::int64_t now_ns) {
   return now_ns - std::llround(settings.latency_s * 1e9);
@@ -66,10 +69,13 @@ std::vector<Bytes> joint_messages(const WorldState& world, const ControllerSetti
 
 StatusRecord status_record(const WorldState& world, const ControllerSettings& settings, std::int64_t now_ns) {
   StatusRecord status;
-  status.in_motion = is_moving(world, now_ns) ? 1 : 0;
-  if (settings.emergency_stop == 0) return status;
-  status.e_stopped = 1;
-  status.drives_powered = status.motion_possible = 0;
+  status.drives_powered = settings.e_stopped != 0 ? 0 : settings.drives_powered;
+  status.e_stopped = settings.e_stopped;
+  status.in_error = settings.in_error;
+  status.error_code = settings.in_error != 0 ? kSomeAlarm : 0;
+  status.in_motion = is_moving(world, now_ns) || world.motion.commanded.end_ns() > now_ns ? 1 : 0;
+  status.mode = settings.automatic != 0 ? kPlay : kTeach;
+  status.motion_possible = not_ready_subcode(world, settings, now_ns) == 0 ? 1 : 0;
   return status;
 }
 
@@ -115,7 +121,7 @@ RtdeState rtde_state(const WorldState& world, const ControllerSettings& settings
   const Joints speeds = reported_velocities(world, settings, now_ns);
   std::copy_n(joints.begin(), state.positions_rad.size(), state.positions_rad.begin());
   std::copy_n(speeds.begin(), state.velocities_rad_s.size(), state.velocities_rad_s.begin());
-  state.emergency_stop = settings.emergency_stop != 0;
+  state.emergency_stop = settings.e_stopped != 0;
   state.arm_has_power = settings.mode != Mode::status_only && !state.emergency_stop;
   return state;
 }

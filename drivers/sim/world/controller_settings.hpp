@@ -30,7 +30,14 @@ struct ControllerSettings {
   std::int32_t status_every = 1;  ///< STATUS in every cycle, or in every so-many-th (FANUC: 11)
   std::int32_t send_bytes = 0;    ///< simple_message leaves in pieces of so many bytes (FANUC: 4); 0: whole
   std::int32_t j3_from_horizontal = 0;  ///< reports joint 3 less joint 2, as FANUC does
-  std::int32_t emergency_stop = 0;
+
+  // What STATUS says, and what the motion port obeys only then.
+  std::int32_t drives_powered = 1;
+  std::int32_t e_stopped = 0;
+  std::int32_t in_error = 0;
+  std::int32_t automatic = 1;  ///< the pendant: 1 PLAY, 0 teach
+  std::int32_t motion_possible =
+      1;  ///< the ROS job runs; it does not while the robot has a program of its own
 
   // RTDE only
   std::int32_t rtde_protocol = 2;  ///< the highest that is accepted; 1: as old controllers

@@ -51,7 +51,7 @@ TEST_F(ControllerCycle, JointThreeIsStatedAgainstTheHorizontalWhenTold) {
 }
 
 TEST_F(ControllerCycle, AnEmergencyStopIsInTheStatus) {
-  settings_.emergency_stop = 1;
+  settings_.e_stopped = 1;
   StatusRecord stopped;
   stopped.e_stopped = 1;
   stopped.drives_powered = stopped.motion_possible = 0;

@@ -221,5 +221,31 @@ TEST_F(LoadConfig, SensorIdMustFitAUrl) {
             std::string::npos);
 }
 
+TEST_F(LoadConfig, MotionIsOffSlowAndCannotBeMadeFast) {
+  const auto loaded = load(kSmallest);
+  ASSERT_TRUE(loaded);
+  EXPECT_FALSE(loaded->config.motion.enabled);
+  EXPECT_EQ(loaded->config.motion.max_speed_deg_s, 5);
+  for (const char* line : {"max_speed_deg_s = 20.1", "max_speed_deg_s = 0", "max_acceleration_deg_s2 = 61",
+                           "path_tolerance_deg = 6", "port = 0"})
+    EXPECT_NE(failure(std::string(kSmallest) + "[motion]\n" + line + "\n").find("cell.toml:5: motion."),
+              std::string::npos)
+        << line;
+}
+
+TEST_F(LoadConfig, RoutesAreListsOfPostures) {
+  const auto routes = std::string(kSmallest) + "[motion.routes.tour]\n";
+  const auto loaded = load(routes + "postures_deg = [[0, 20.5], [10, -25]]\n");
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  EXPECT_EQ(loaded->config.motion.routes.at("tour").postures_deg,
+            (std::vector<std::vector<double>>{{0, 20.5}, {10, -25}}));
+  for (const char* value : {"[]", "[[]]", "[0, 20]", "[[0, \"a\"]]", "[[0, 1000]]", "7"})
+    EXPECT_NE(failure(routes + "postures_deg = " + value + "\n").find("motion.routes.tour.postures_deg"),
+              std::string::npos)
+        << value;
+  EXPECT_NE(failure(routes).find("motion.routes.tour.postures_deg"), std::string::npos)
+      << "a route without postures";
+}
+
 }  // namespace
 }  // namespace calibrd
