@@ -66,7 +66,7 @@ void OffsetFilter::reset() {
       information_of(settings_.pose_rad, settings_.pose_m, settings_.range_m);
   block_.clear();
   blocks_ = 0;
-  gated_in_row_ = 0;
+  far_in_row_ = 0;
   scatter_weight_ = scatter_squares_ = 0;
   frame_weight_ = frame_squares_ = frame_variance_ = 0;
 }
@@ -93,11 +93,9 @@ void OffsetFilter::close_block() {
         (block.gradient[0] - block.information.row(0).tail<kNuisances>().dot(state.tail<kNuisances>())) /
         worth;
     const double off_s = alone_s - state[0], sigmas = std::abs(off_s) * std::sqrt(worth);
-    const bool gated = blocks_ >= settings_.least_blocks &&
-                       sigmas > settings_.gate_sigmas * std::max(1.0, scatter()) &&
-                       std::abs(off_s) > settings_.gate_s;
-    gated_in_row_ = gated ? gated_in_row_ + 1 : 0;
-    if (gated) return block_.clear();
+    const bool far = blocks_ >= settings_.least_blocks && std::abs(off_s) > settings_.gate_s;
+    count_far(far && sigmas > settings_.lost_sigmas ? off_s : 0);
+    if (far && sigmas > settings_.gate_sigmas * std::max(1.0, scatter())) return block_.clear();
     const double keep = 1 - 1 / static_cast<double>(settings_.memory_blocks);
     scatter_weight_ = keep * scatter_weight_ + 1;
     scatter_squares_ = keep * scatter_squares_ + sigmas * sigmas;
@@ -108,6 +106,12 @@ void OffsetFilter::close_block() {
   ++blocks_;
   judge_frames(total_.information.ldlt().solve(total_.gradient));
   block_.clear();
+}
+
+/// Blocks that scatter lie off to either side; blocks of another offset all to one.
+void OffsetFilter::count_far(double off_s) {
+  if (off_s * far_in_row_ <= 0) far_in_row_ = 0;
+  if (off_s != 0) far_in_row_ += off_s > 0 ? 1 : -1;
 }
 
 /// How far single frames of the block lie about each other: what the stamps' jitter does.

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -50,9 +51,10 @@ struct OffsetFilterSettings {
   double offset_prior_s = 0.3;
   std::size_t memory_blocks = 300;  ///< older ones are forgotten slowly
   std::size_t least_blocks = 6;     ///< before anything is said
-  double gate_sigmas = 5;           ///< a block farther off than this, and than gate_s, is left out ...
+  double gate_sigmas = 5;           ///< a block farther off than this, and than gate_s, is left out
   double gate_s = 0.010;
-  int gated_to_lost = 6;  ///< ... and so many in a row mean that the offset is another one now
+  double lost_sigmas = 2;  ///< farther off than this, and than gate_s, to one side, ...
+  int blocks_to_lost = 7;  ///< ... and so many in a row: the offset is another one now
 };
 
 /// Fuses frames of a moving robot into one time offset. What to-and-fro tells apart is told apart: the pose's
@@ -78,10 +80,11 @@ class OffsetFilter {
   /// What counts while too few blocks are in: nothing before the first.
   std::optional<double> working_value() const;
   /// So many blocks in a row have disagreed that all before them no longer holds.
-  bool is_lost() const { return gated_in_row_ >= settings_.gated_to_lost; }
+  bool is_lost() const { return std::abs(far_in_row_) >= settings_.blocks_to_lost; }
 
  private:
   void close_block();
+  void count_far(double off_s);
   void judge_frames(const OffsetVector& state);
   double scatter() const;
 
@@ -90,7 +93,7 @@ class OffsetFilter {
   std::vector<OffsetEquations> block_;
   double block_begin_s_ = 0;
   std::size_t blocks_ = 0;
-  int gated_in_row_ = 0;
+  int far_in_row_ = 0;                               // signed
   double scatter_weight_ = 0, scatter_squares_ = 0;  // of whitened block innovations
   double frame_weight_ = 0, frame_squares_ = 0, frame_variance_ = 0;
 };
