@@ -59,12 +59,24 @@ OffsetEquations OffsetSums::equations() const {
   return equations;
 }
 
-void OffsetFilter::reset() {
+void OffsetFilter::begin(double offset_s, double sigma_s) {
   total_ = {};
-  total_.information(0, 0) = 1 / (settings_.offset_prior_s * settings_.offset_prior_s);
+  total_.information(0, 0) = 1 / (sigma_s * sigma_s);
+  total_.gradient[0] = offset_s / (sigma_s * sigma_s);
   total_.information.diagonal().tail<kNuisances>() =
       information_of(settings_.pose_rad, settings_.pose_m, settings_.range_m);
   block_.clear();
+}
+
+void OffsetFilter::forget_pose() {
+  if (blocks_ == 0) return;
+  constexpr double kDoubt = 2;
+  const Eigen::LDLT<OffsetMatrix> solver(total_.information);
+  begin(solver.solve(total_.gradient)[0], kDoubt * std::sqrt(solver.solve(OffsetVector::Unit(0))[0]));
+}
+
+void OffsetFilter::reset() {
+  begin(0, settings_.offset_prior_s);
   blocks_ = 0;
   far_in_row_ = 0;
   scatter_weight_ = scatter_squares_ = 0;

@@ -65,6 +65,8 @@ class OffsetFilter {
  public:
   explicit OffsetFilter(const OffsetFilterSettings& settings = {}) : settings_(settings) { reset(); }
   void reset();
+  /// Keeps the offset, half as certain as it was, and begins anew with all else.
+  void forget_pose();
 
   /// `time_s` on any clock, going forward.
   void add(const OffsetEquations& frame, double time_s);
@@ -83,6 +85,7 @@ class OffsetFilter {
   bool is_lost() const { return std::abs(far_in_row_) >= settings_.blocks_to_lost; }
 
  private:
+  void begin(double offset_s, double sigma_s);
   void close_block();
   void count_far(double off_s);
   void judge_frames(const OffsetVector& state);

@@ -32,8 +32,10 @@ class TimeOffsetEstimator {
   TimeOffsetEstimator(const VirtualCell& cell, const CameraModel& camera,
                       const TimeOffsetSettings& settings = {});
 
-  /// Forgets everything: after another pose, or when a link was made anew.
+  /// Forgets everything: when a link was made anew, stamps may be late by another time.
   void reset();
+  /// Frames are compared with another pose from now on: the offset alone is kept.
+  void forget_pose() { filter_.forget_pose(); }
 
   /// Takes a frame in which the robot moves. False: it said nothing (joints not known around it, too few
   /// pixels).

@@ -41,7 +41,9 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   const auto basis = robot_basis_ + camera_basis(setup.camera, setup.mirror);
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
-      estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });
+      estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); },
+      setup.estimates_time_offset && estimator_.make_time_offset ? estimator_.make_time_offset(setup.camera)
+                                                                 : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();
@@ -204,6 +206,7 @@ Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequ
   auto collector = settings_.jobs.collector;
   collector.postures = request.postures;
   collector.frames_per_posture = 1;  // a recording holds what the sensor delivered
+  collector.moving_views = false;    // ... and cannot tell how well its joints are known
   const auto task = std::make_shared<CollectTask>(collector);
   {
     const std::lock_guard lock(entry.recording);
@@ -260,6 +263,9 @@ Estimator core_estimator(const VirtualCell& cell) {
                const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
       return checker->check(view, T_base_sensor, correction);
     };
+  };
+  estimator.make_time_offset = [&cell](const CameraModel& camera) {
+    return std::make_unique<TimeOffsetEstimator>(cell, camera);
   };
   return estimator;
 }

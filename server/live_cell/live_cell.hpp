@@ -21,6 +21,8 @@ namespace calibrd {
 struct Estimator {
   CalibrateFunction calibrate;
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
+  /// One for each sensor that wants it; unset: time offsets are not estimated.
+  std::function<std::unique_ptr<TimeOffsetEstimator>(const CameraModel&)> make_time_offset = {};
 };
 
 struct LiveCellSettings {
@@ -49,6 +51,7 @@ struct SensorSetup {
   std::optional<Pose> guess_T_base_sensor;
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
   bool mirror = false;                         ///< its rows are flipped before anybody sees them
+  bool estimates_time_offset = true;
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.

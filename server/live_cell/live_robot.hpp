@@ -38,10 +38,10 @@ class LiveRobot {
 
   const RobotModel& model() const { return model_; }
   std::optional<JointState> newest_joints() const;
-  /// Joints are there and fresh.
-  bool is_stale(const JointState& joints) const {
-    return Clock::now() - joints.stamp > stillness_.stale_after;
-  }
+  /// They are too old, or the controller goes on sending the same ones while it says that it moves.
+  bool is_stale(const JointState& joints) const;
+  /// Of the link, since start.
+  std::uint64_t connects() const;
 
   /// Also computes where the links are.
   api::RobotReport report() const;

@@ -12,6 +12,7 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
+constexpr std::size_t kMostPending = 15;  ///< frames that wait for joints: of controllers later than sensors
 constexpr auto kRateWindow = 2s;
 
 const char* name_of(SensorHealth::State state) {
@@ -33,12 +34,15 @@ double seconds_of(Clock::time_point time) {
 }  // namespace
 
 LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-                       std::function<void(const api::PoseReport&)> on_pose)
+                       std::function<void(const api::PoseReport&)> on_pose,
+                       std::unique_ptr<TimeOffsetEstimator> time_offset)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
       on_pose_(std::move(on_pose)),
-      gate_(settings_.gate),
+      reach_(std::make_shared<const LinkReach>(robot.model())),
+      offset_(std::move(time_offset), reach_, {.latency = settings_.gate.latency}),
+      gate_(settings_.gate, reach_),
       watch_(settings_.watch) {}
 
 LiveSensor::~LiveSensor() {
@@ -61,9 +65,11 @@ void LiveSensor::start(std::unique_ptr<DepthSource> source) {
 void LiveSensor::run() {
   auto* source = source_.get();
   while (!is_stopping_) {
-    if (auto frame = source->next(pending_ ? kJointsPatience : kFramePatience)) take_up(*std::move(frame));
+    if (auto frame = source->next(pending_.empty() ? kFramePatience : kJointsPatience))
+      take_up(*std::move(frame));
     notice_loss(source->health());
-    if (pending_) settle();
+    settle();
+    watch_offset();
     tell_of_pose();
   }
   std::unique_lock lock(mutex_);
@@ -72,20 +78,20 @@ void LiveSensor::run() {
 }
 
 void LiveSensor::take_up(DepthFrame frame) {
-  if (pending_) finish({FrameVerdict::awaiting_joints, std::nullopt});
+  if (pending_.size() >= kMostPending) finish({FrameVerdict::awaiting_joints, std::nullopt});
   {
     const std::lock_guard lock(mutex_);
     arrivals_.push_back(frame.stamp);
     if (arrivals_.size() > kRateFrames) arrivals_.pop_front();
   }
   if (!has_size_of_camera(frame)) return note(FrameVerdict::wrong_size);
-  if (const auto verdict = gate_.enter(frame.sequence, frame.stamp); verdict != FrameVerdict::usable)
+  if (const auto verdict = gate_.enter(frame.sequence, frame.stamp, &frame.depth);
+      verdict != FrameVerdict::usable)
     return note(verdict);
-  pending_ = std::make_unique<Sighting>();
-  pending_->view.depth = std::move(frame.depth);
-  pending_->view.image = std::move(frame.image);
-  pending_->view.stamp_s = seconds_of(frame.stamp);
-  pending_->stamp = frame.stamp;
+  auto& entered = *pending_.emplace_back(std::make_shared<Sighting>());
+  entered.view.depth = std::move(frame.depth);
+  entered.view.image = std::move(frame.image);
+  entered.stamp = entered.exposed = frame.stamp;
 }
 
 bool LiveSensor::has_size_of_camera(const DepthFrame& frame) const {
@@ -99,21 +105,33 @@ bool LiveSensor::has_size_of_camera(const DepthFrame& frame) const {
 }
 
 void LiveSensor::settle() {
-  auto decision =
-      robot_.read_joints([this](const JointHistory& joints) { return gate_.judge(joints, Clock::now()); });
-  if (decision.verdict != FrameVerdict::awaiting_joints) finish(std::move(decision));
+  while (!pending_.empty()) {
+    auto decision = robot_.read_joints([this](const JointHistory& joints) {
+      return gate_.judge(joints, pending_.front()->stamp, Clock::now());
+    });
+    if (decision.verdict == FrameVerdict::awaiting_joints) return;
+    finish(std::move(decision));
+  }
 }
 
 void LiveSensor::finish(FrameDecision decision) {
-  if (decision.positions_rad) pending_->view.joint_positions_rad = *std::move(decision.positions_rad);
-  const std::shared_ptr<const Sighting> sighting = std::move(pending_);
+  const auto finished = std::move(pending_.front());
+  pending_.pop_front();
+  if (decision.positions_rad) finished->view.joint_positions_rad = *std::move(decision.positions_rad);
+  if (decision.exposed != Clock::time_point()) finished->exposed = decision.exposed;
+  finished->view.stamp_s = seconds_of(finished->exposed);
+  const bool usable = decision.verdict == FrameVerdict::usable,
+             timed = decision.verdict == FrameVerdict::timed;
+  finished->view.is_moving = !usable;
+  const std::shared_ptr<const Sighting> sighting = finished;
   note(decision.verdict);
   {
     const std::lock_guard lock(mutex_);
     newest_ = sighting;
+    timing_error_m_ = decision.timing_error_m;
   }
-  const bool usable = decision.verdict == FrameVerdict::usable;
-  serve_tasks(*sighting, usable);
+  offset_.offer(sighting);
+  serve_tasks(*sighting, usable || timed);
   if (usable) check(*sighting);
 }
 
@@ -140,6 +158,18 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
     watch_.on_sensor_lost();
   }
   for (const auto& task : open_tasks()) task->start_over();
+}
+
+/// Poses that are not known to be right now must not teach it.
+void LiveSensor::watch_offset() {
+  std::optional<OffsetBasis> basis;
+  {
+    const std::lock_guard lock(mutex_);
+    if (known_ && watch_.state() == api::PoseState::calibrated)
+      basis = OffsetBasis{*known_->result.T_base_sensor, known_->result.depth_correction, pose_number_};
+  }
+  offset_.work(robot_, basis, robot_.connects() + restarts_);
+  gate_.set_offset(offset_.applied());
 }
 
 void LiveSensor::check(const Sighting& sighting) {
@@ -253,12 +283,16 @@ api::SensorReport LiveSensor::report() const {
   if (!arrivals_.empty()) report.frame_age = now - arrivals_.back();
   report.camera = settings_.camera;
   report.has_image = newest_ && newest_->view.image;
-  report.views.usable = verdict_ == FrameVerdict::usable;
+  report.views.usable = verdict_ == FrameVerdict::usable || verdict_ == FrameVerdict::timed;
+  report.views.timing_error_m = timing_error_m_;
+  report.time_offset = offset_.report(now);
   report.views.code = name_of(verdict_);
   report.views.reason = reason_of(verdict_);
-  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)];
+  report.views.moving_views = counts_[static_cast<std::size_t>(FrameVerdict::timed)];
+  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)] + report.views.moving_views;
   for (std::size_t i = 1; i < kFrameVerdicts; ++i)
-    if (counts_[i] > 0) report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
+    if (counts_[i] > 0 && static_cast<FrameVerdict>(i) != FrameVerdict::timed)
+      report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
   report.pose_state = watch_.state();
   report.pose_valid = known_ && watch_.is_valid(now);
   return report;
