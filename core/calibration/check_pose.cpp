@@ -24,15 +24,14 @@ constexpr double kMaxShiftSigmas = 4;
 /// Something this much in front of the robot hides it, and says nothing about the sensor's pose.
 constexpr double kInFront_m = 0.05;
 
-/// δ about the sensor's origin, as turn and as shift of the point `lever_base` away from it.
-Matrix6d about_point(const Eigen::Vector3d& lever_base) {
+}  // namespace
+
+Matrix6d shift_of_point(const Eigen::Vector3d& lever) {
   Matrix6d move = Matrix6d::Identity();
-  move.bottomLeftCorner<3, 3>() << 0, lever_base.z(), -lever_base.y(), -lever_base.z(), 0, lever_base.x(),
-      lever_base.y(), -lever_base.x(), 0;
+  move.bottomLeftCorner<3, 3>() << 0, lever.z(), -lever.y(), -lever.z(), 0, lever.x(), lever.y(), -lever.x(),
+      0;
   return move;
 }
-
-}  // namespace
 
 PoseChecker::PoseChecker(const VirtualCell& cell, const CameraModel& camera)
     : camera_(camera), cell_(cell), tracker_(cell, camera) {}
@@ -76,7 +75,7 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   if (check.agreement < kMinAgreement) return check;
   const auto tracked = tracker_.update(view, T_base_sensor, correction);
   if (!tracked) return check;  // too few pixels agree to within centimetres: the pose does not explain them
-  const Matrix6d move = about_point(middle_base - T_base_sensor.translation());
+  const Matrix6d move = shift_of_point(middle_base - T_base_sensor.translation());
   const Vector6d shift = move * tracked->innovation;
   // A sensor whose residuals scatter more than noise explains is wrong by whole patches, too.
   const double scatter = std::max(1.0, tracked->sigma_factor);
@@ -85,6 +84,9 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
       Eigen::Vector3d::Constant(kModelShift_m * kModelShift_m);
   Matrix6d covariance = move * tracked->covariance * move.transpose();
   covariance.diagonal() += scatter * scatter * allowed;
+  check.turn_shift = shift;
+  check.turn_shift_covariance = covariance;
+  check.middle_base = middle_base;
   check.turn_rad = shift.head<3>().norm();
   check.shift_m = shift.tail<3>().norm();
   check.shift_sigmas = std::sqrt(shift.dot(covariance.ldlt().solve(shift)));

@@ -19,7 +19,16 @@ struct PoseCheck {
   double shift_m = 0, turn_rad = 0;
   /// ... against what noise, model and joint zeros explain, in standard deviations of 6 degrees of freedom.
   double shift_sigmas = 0;
+  /// The same in full: turn (rad) and shift (m) of the point `middle_base` (m), base axes, if it is the
+  /// sensor that moved, and the covariance that noise, model and joint zeros explain.
+  Vector6d turn_shift = Vector6d::Zero();
+  Matrix6d turn_shift_covariance = Matrix6d::Identity();
+  Eigen::Vector3d middle_base = Eigen::Vector3d::Zero();
 };
+
+/// Maps perturbed()'s δ about a point to turn and shift of the point that lies `lever` (m, same axes) from
+/// it.
+Matrix6d shift_of_point(const Eigen::Vector3d& lever);
 
 /// Compares views with what a pose predicts. Where the view pins it down, a robot that appears 5 mm or 10
 /// mrad from where the pose puts it disagrees; a direction that this one posture does not show is not

@@ -105,4 +105,10 @@ struct ScenesOptions {
 };
 int run_scenes(ScenesOptions options);
 
+struct WatchOptions {
+  Paths urdfs, models;  ///< the scenes take the robots in turn
+  std::uint64_t first_seed = 1, events = 21;
+};
+int run_watch(const WatchOptions& options);
+
 }  // namespace calibrd::bench

@@ -90,6 +90,17 @@ CLI::App* add_track(CLI::App& app, TrackOptions& track) {
   return command;
 }
 
+CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
+  CLI::App* command =
+      app.add_subcommand("watch", "stage events before watched sensors and tell the verdicts");
+  command->add_option("--robot", watch.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", watch.models, "folders to look robot models up in");
+  command->add_option("--first-seed", watch.first_seed);
+  command->add_option("--events", watch.events)->check(CLI::Range(1, 1000000));
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,11 +113,13 @@ int main(int argc, char** argv) {
   ScenesOptions scenes;
   RegisterOptions clouds;
   TrackOptions track;
+  WatchOptions watch;
   const CLI::App* fine_command = add_fine(app, fine);
   const CLI::App* global_command = add_global(app, global);
   add_render(app, render);
   const CLI::App* scenes_command = add_scenes(app, scenes);
   const CLI::App* register_command = add_register(app, clouds);
+  const CLI::App* watch_command = add_watch(app, watch);
   const CLI::App* track_command = add_track(app, track);
   try {
     app.parse(argc, argv);
@@ -114,6 +127,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   if (register_command->parsed()) return run_register(clouds);
+  if (watch_command->parsed()) return run_watch(watch);
   if (track_command->parsed()) return run_track(track);
   if (global_command->parsed()) return run_global(global);
   if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {

@@ -173,7 +173,10 @@ Result<SimulatedCapture> simulate_capture(const Robot& robot, std::uint64_t seed
   for (int i = 0; i < kPoseTries; ++i) {
     capture.T_base_sensor = random_pose(middle, options, recording.random);
     recording.sensor().T_base_sensor = PoseValues::of(capture.T_base_sensor);
-    if (record_from_here(recording, options, *tables, model, capture)) return capture;
+    if (!record_from_here(recording, options, *tables, model, capture)) continue;
+    capture.world = std::make_shared<const FurnishedCell>(recording.furnished);
+    capture.postures = recording.postures;
+    return capture;
   }
   return sim_error(SimError::no_view_of_robot, "seed " + std::to_string(seed));
 }

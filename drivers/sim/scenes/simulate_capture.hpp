@@ -45,6 +45,8 @@ struct SimulatedCapture {
   DepthErrors depth_errors;
   std::vector<double> joint_zero_rad;
   std::vector<CheckPoint> check_points;
+  std::shared_ptr<const FurnishedCell> world;  ///< the cell, its sensor in place
+  std::vector<Joints> postures;                ///< true, of the views
 };
 
 /// Records one random cell. The same seed, robot and options give the same recording.

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/drift/background_match.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/registration/linearization.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr double kFirstKernel_m = 0.04, kLeastKernel_m = 0.006;
+constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
+constexpr double kTypicalSigma_m = 1.6e-3;
+constexpr int kSteps = 3;
+/// Cells of one square of this side share what correlates: bumps that were no planes, multipath, a cable.
+constexpr int kClusterSide = 6;
+/// A cell whose depth differs by more is another surface.
+constexpr float kOtherSurface_m = 0.02F;
+constexpr float kOtherSurfaceSigmas = 8;
+constexpr std::size_t kLeastCells = 150;
+/// Below this share of what could be seen the fit may be of anything.
+constexpr double kLeastShare = 0.35;
+/// No direction is known worse than this before the frame: it only keeps the equations solvable.
+constexpr double kVague = 0.5, kVagueOffset_m = 0.1;
+
+}  // namespace
+
+struct BackgroundMatcher::Fit {
+  Parameters solution = Parameters::Zero();
+  Information information = Information::Zero();
+  Parameters gradient = Parameters::Zero();
+  Information covariance = Information::Zero();
+  double squares = 0, cluster_squares = 0, scatter = 1;
+  std::size_t used = 0;
+};
+
+/// The sensor moves by δ (sensor axes), the plane m·p = 1 stands: the depth z = 1/(m·d) along d changes by
+/// -z (m·δt) - z² (d×m)·δω.
+void BackgroundMatcher::refresh() {
+  rows_.clear();
+  const CameraModel& grid = map_.grid();
+  const auto per_row = static_cast<std::uint32_t>((grid.width - 1) / kClusterSide + 1);
+  for (int y = 0; y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      const auto cell = static_cast<std::uint32_t>(y * grid.width + x);
+      const BackgroundCell& known = map_.cells()[cell];
+      if (!known.has_plane()) continue;
+      const Eigen::Vector3f d = map_.rays().at(x, y).cast<float>(), m = known.normal_per_m;
+      const float z = known.depth_m;
+      Row row{cell,
+              static_cast<std::uint32_t>(y / kClusterSide) * per_row +
+                  static_cast<std::uint32_t>(x / kClusterSide),
+              known.sigma_m,
+              {}};
+      row.slope.head<3>() = -z * z * d.cross(m);
+      row.slope.segment<3>(3) = -z * m;
+      row.slope[6] = 1;
+      rows_.push_back(row);
+    }
+  }
+  clusters_ =
+      static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
+}
+
+void BackgroundMatcher::sample(const DepthImage& depth) {
+  const CameraModel& grid = map_.grid();
+  depth_m_.resize(map_.cells().size());
+  for (int y = 0; y < grid.height; ++y) {
+    const std::uint16_t* raw = depth.raw.data() + depth.index(0, kBackgroundStride * y);
+    float* cells = depth_m_.data() + static_cast<std::ptrdiff_t>(y) * grid.width;
+    for (int x = 0; x < grid.width; ++x)
+      cells[x] = static_cast<float>(raw[kBackgroundStride * x] * depth.scale_m);
+  }
+}
+
+void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m,
+                                Fit& fit) {
+  fit = {};
+  whitened_.clear();
+  pulls_.assign(clusters_, 0.0);
+  const Eigen::Matrix<float, kParameters, 1> start = at.cast<float>();
+  for (const Row& row : rows_) {
+    const float z = depth_m_[row.cell];
+    if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
+    const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
+    const double off = residual / kernel_m;
+    if (std::abs(off) >= 1) continue;
+    const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
+    const Parameters slope = row.slope.cast<double>();
+    const double weight = robust / (static_cast<double>(row.sigma_m) * row.sigma_m);
+    fit.information.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
+    fit.gradient += weight * residual * slope;
+    const double pull = robust * whitened;
+    pulls_[row.cluster] += pull;
+    fit.squares += pull * pull;
+    whitened_.push_back(static_cast<float>(whitened));
+    ++fit.used;
+  }
+  for (const double pull : pulls_) fit.cluster_squares += pull * pull;
+  fit.information = fit.information.selfadjointView<Eigen::Lower>();
+}
+
+BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robot) {
+  Parameters at = Parameters::Zero();
+  at[6] = last_offset_m_;
+  Parameters vague = Parameters::Constant(1 / (kVague * kVague));
+  vague[6] = 1 / (kVagueOffset_m * kVagueOffset_m);
+  double kernel_m = kFirstKernel_m;
+  Fit fit;
+  for (int i = 0; i < kSteps; ++i) {
+    collect(robot, at, kernel_m, fit);
+    if (fit.used < kLeastCells) return fit;
+    fit.scatter = robust_sigma(whitened_);
+    const double correlation = std::max(1.0, fit.cluster_squares / fit.squares);
+    const double worth = 1 / (fit.scatter * fit.scatter * correlation);
+    Information information = worth * fit.information;
+    information.diagonal() += vague;
+    const Eigen::LDLT<Information> solver(information);
+    at += solver.solve(worth * fit.gradient - vague.cwiseProduct(at));
+    fit.covariance = solver.solve(Information::Identity());
+    kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, kFirstKernel_m);
+  }
+  fit.solution = at;
+  return fit;
+}
+
+void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
+                                 BackgroundObservation& observation) {
+  states_.assign(map_.cells().size(), CellState::unknown);
+  const auto offset = static_cast<float>(fit.solution[6]);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const BackgroundCell& known = map_.cells()[i];
+    if (known.depth_m <= 0) continue;
+    CellState& state = states_[i];
+    const float gate = std::max(kOtherSurface_m, kOtherSurfaceSigmas * known.sigma_m);
+    if (!robot.empty() && robot[i] != 0)
+      state = CellState::robot;
+    else if (depth_m_[i] <= 0)
+      state = CellState::dark;
+    else if (const float change = depth_m_[i] - known.depth_m - offset; change < -gate)
+      state = CellState::nearer;
+    else
+      state = change > gate ? CellState::farther : CellState::same;
+  }
+  // Edges of the background may fall to either side: only cells with a plane count.
+  for (const Row& row : rows_) ++observation.counts[static_cast<std::size_t>(states_[row.cell])];
+}
+
+BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::span<const std::uint8_t> robot,
+                                               const Eigen::Matrix3d& R_base_sensor) {
+  sample(depth);
+  const Fit found = fit(robot);
+  BackgroundObservation observation;
+  classify(robot, found, observation);
+  observation.has_evidence = found.used >= kLeastCells && observation.share(CellState::same) >= kLeastShare;
+  if (found.used < kLeastCells) return observation;
+  Matrix6d turn = Matrix6d::Zero();  // from sensor to base axes
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_base_sensor;
+  observation.shift = turn * found.solution.head<6>();
+  observation.covariance = turn * found.covariance.topLeftCorner<6, 6>() * turn.transpose();
+  observation.offset_change_m = found.solution[6];
+  observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
+  observation.scatter = found.scatter;
+  if (observation.has_evidence && std::abs(found.solution[6]) < kFirstKernel_m)
+    last_offset_m_ = found.solution[6];
+  return observation;
+}
+
+}  // namespace calibrd

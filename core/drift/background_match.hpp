@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/drift/background_map.hpp"
+#include "core/geometry/pose.hpp"
+
+namespace calibrd {
+
+/// What has become of one cell of the background in a frame.
+enum class CellState : std::uint8_t {
+  unknown,  ///< nothing is remembered here
+  robot,    ///< hidden by the robot, or too near its outline
+  dark,     ///< no measurement
+  same,
+  nearer,  ///< something stands in front
+  farther  ///< what was here is gone
+};
+
+/// One frame against the remembered background.
+struct BackgroundObservation {
+  bool has_evidence = false;  ///< enough of the background is where a sensor about here would see it
+  /// Where the sensor seems to be, as perturbed() takes it, from the pose at which the background was learnt.
+  Vector6d shift = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+  double offset_change_m = 0;  ///< of the range, since then
+  double offset_sigma_m = 0;
+  double scatter = 1;      ///< residuals against what noise explains
+  bool realigned = false;  ///< the background had to be searched: it lies far from where it should
+  std::array<std::size_t, 6> counts{};  ///< cells of each CellState
+  std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
+  /// Cells that could tell: remembered, not hidden by the robot.
+  std::size_t visible() const {
+    return count(CellState::dark) + count(CellState::same) + count(CellState::nearer) +
+           count(CellState::farther);
+  }
+  double share(CellState state) const {
+    return visible() > 0 ? static_cast<double>(count(state)) / static_cast<double>(visible()) : 0;
+  }
+};
+
+/// Follows the sensor by what it sees of the background: point-to-plane on the remembered planes, pose and
+/// range offset free, robustly (Tukey), because people, boxes and what the robot carries are in front of it.
+/// The covariance holds the correlation between neighbouring pixels and the scatter that was found; a
+/// direction that the background does not show has a large one. One thread at a time.
+class BackgroundMatcher {
+ public:
+  static constexpr std::size_t kParameters = 7;  ///< perturbed()'s six in sensor axes, range offset
+
+  /// `map` must outlive it.
+  explicit BackgroundMatcher(const BackgroundMap& map) : map_(map) { refresh(); }
+  /// To be called when parts of the map have changed ...
+  void refresh();
+  /// ... and when it is another one.
+  void start_over() {
+    last_offset_m_ = 0;
+    refresh();
+  }
+
+  /// `robot`: one value per cell, 1 = hidden by the robot. `R_base_sensor`: of the pose the map was learnt
+  /// at.
+  BackgroundObservation match(const DepthImage& depth, std::span<const std::uint8_t> robot,
+                              const Eigen::Matrix3d& R_base_sensor);
+
+  /// Of the last frame, row-major cells.
+  const std::vector<CellState>& states() const { return states_; }
+  /// Depth of the last frame on the cells, m; 0 = no measurement.
+  const std::vector<float>& depth_m() const { return depth_m_; }
+
+ private:
+  using Parameters = Eigen::Matrix<double, kParameters, 1>;
+  using Information = Eigen::Matrix<double, kParameters, kParameters>;
+  struct Row {
+    std::uint32_t cell = 0, cluster = 0;
+    float sigma_m = 0;
+    Eigen::Matrix<float, kParameters, 1> slope;  // of the depth by the parameters
+  };
+  struct Fit;
+  void sample(const DepthImage& depth);
+  Fit fit(std::span<const std::uint8_t> robot);
+  void collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m, Fit& fit);
+  void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
+
+  const BackgroundMap& map_;
+  std::vector<Row> rows_;
+  std::size_t clusters_ = 0;
+  std::vector<float> depth_m_;
+  std::vector<CellState> states_;
+  std::vector<float> whitened_;
+  std::vector<double> pulls_;
+  double last_offset_m_ = 0;  // where the next frame starts
+};
+
+}  // namespace calibrd

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/calibration/check_pose.hpp"
+#include "core/drift/background_match.hpp"
+#include "core/drift/scene_change.hpp"
+#include "core/drift/shift_test.hpp"
+
+namespace calibrd {
+
+/// What the frames say of a sensor's pose. Kept apart because each calls for something else.
+enum class DriftVerdict {
+  in_place,
+  sensor_moved,        ///< the pose is wrong: calibrate again
+  something_in_front,  ///< a person, a part: it passes
+  scene_changed,       ///< a box moved, a door opened; the sensor stands
+  robot_model_wrong,   ///< the background is in place, the robot is not: joint zero, base, model
+  depth_bias_changed,  ///< the range reads more or less than at calibration (warm-up)
+  no_evidence          ///< neither background nor robot in view, or the sensor is dark
+};
+inline constexpr std::size_t kDriftVerdicts = 7;
+
+/// Stable name for programs: "in_place", "sensor_moved", …
+const char* name_of(DriftVerdict verdict);
+/// What it means and what to do.
+const char* text_of(DriftVerdict verdict);
+
+struct DriftSettings {
+  ShiftTestSettings shift;
+  SceneChangeSettings scene;
+  double depth_bias_m = 0.003;    ///< a change of the range offset by more is worth a verdict
+  double absorb_s = 60;           ///< what has changed and stands for so long becomes background
+  double carried_reach_m = 0.35;  ///< what is so near the end of the arm is carried by it
+};
+
+/// One look at the watch.
+struct DriftReport {
+  DriftVerdict verdict = DriftVerdict::no_evidence;
+  bool has_background = false;
+  double statistic = 0, threshold = 0;  ///< of the test for a moved sensor
+  double turn_rad = 0, shift_m = 0;     ///< mean over some frames; the shift is that of what the sensor sees
+  double turn_sigma_rad = 0, shift_sigma_m = 0;        ///< of one frame
+  double depth_offset_change_m = 0;                    ///< mean over a second
+  double same = 0, nearer = 0, farther = 0, dark = 0;  ///< shares of the background in view
+  std::optional<Pose>
+      T_base_sensor_seen;  ///< where the background says the sensor is; only once it has moved
+};
+
+/// Watches one sensor's pose, frame by frame: the remembered background tells within some frames whether the
+/// sensor has moved, the robot whether it is the sensor or the robot that is off. Without I/O; one thread.
+class DriftWatch {
+ public:
+  /// The robot of `cell` must outlive it.
+  DriftWatch(const VirtualCell& cell, const CameraModel& camera, const DriftSettings& settings);
+
+  /// Another pose, its background not known yet.
+  void set_pose(const Pose& T_base_sensor);
+  /// The background as the sensor saw it where the pose holds: views it stood still for, of a robot in
+  /// different postures (one shows nothing behind the robot).
+  void learn(std::span<const View> views);
+  bool has_background() const { return !map_.is_empty(); }
+
+  /// The next frame; joint_positions_rad empty when they are not known.
+  const DriftReport& add_frame(const View& frame);
+  /// What a comparison of a frame with the robot said.
+  void add_check(const PoseCheck& check, double now_s);
+
+  const DriftReport& report() const { return report_; }
+  /// A comparison with the robot would help to decide now.
+  bool wants_check() const { return test_.statistic() > 0.2 * test_.threshold(); }
+  /// The background is in view and where it was.
+  bool is_in_place() const;
+
+  const BackgroundMap& background() const { return map_; }
+  const BackgroundMatcher& matcher() const { return matcher_; }
+  /// Innovation of the last frame about the middle of the background, for whoever studies the test.
+  struct Innovation {
+    Vector6d turn_shift;
+    Matrix6d covariance;
+  };
+  const std::optional<Innovation>& innovation() const { return innovation_; }
+
+ private:
+  void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
+  void test(const BackgroundObservation& observation);
+  void follow_offset(const BackgroundObservation& observation, double now_s);
+  void follow_loss(const BackgroundObservation& observation, double now_s);
+  void mark_carried(const View& frame);
+  void absorb(const View& frame, double now_s);
+  void describe(const BackgroundObservation& observation);
+  void judge(double now_s);
+  bool robot_denies_the_shift(double now_s) const;
+
+  DriftSettings settings_;
+  CameraModel camera_;
+  Pose T_base_sensor_ = Pose::Identity();
+  RobotMask robot_;
+  BackgroundMap map_;
+  BackgroundMatcher matcher_;
+  SceneChange scene_;
+  ShiftTest test_;
+  DriftReport report_;
+  std::optional<Innovation> innovation_;
+  std::optional<Pose> T_learnt_now_;  // of the last realignment
+  std::vector<std::uint8_t> carried_;
+  bool moved_ = false;
+  int frames_ = 0;
+  double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0;
+  double in_front_s_ = -1e9;  // last time something was
+  double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
+  bool bias_changed_ = false;
+  // What the robot said, newest last.
+  std::optional<PoseCheck> check_;
+  double check_s_ = -1e9;
+  double robot_statistic_ = 0;
+};
+
+}  // namespace calibrd

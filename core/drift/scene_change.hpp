@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/drift/background_match.hpp"
+
+namespace calibrd {
+
+struct SceneChangeSettings {
+  double settle_s = 1;           ///< what has gone, and stays so for this long, is a change of the scene
+  double stand_s = 4;            ///< ... what has come
+  std::size_t least_cells = 12;  ///< with all four neighbours changed, too: edges flicker
+};
+
+/// Tells what passes in front of the background from what has changed for good: the former moves. Follows
+/// each cell's depth from frame to frame. Not thread-safe.
+class SceneChange {
+ public:
+  /// `width`: cells per row.
+  SceneChange(const SceneChangeSettings& settings, int width)
+      : settings_(settings), width_(static_cast<std::size_t>(width)) {}
+
+  /// `ignored`: one value per cell, 1 = of no interest (what the robot carries); may be empty.
+  void add(std::span<const CellState> states, std::span<const float> depth_m,
+           std::span<const std::uint8_t> ignored, double now_s);
+  void reset();
+
+  bool has_changed() const { return settled_ >= settings_.least_cells; }
+  bool is_something_in_front() const { return passing_ >= settings_.least_cells; }
+  std::size_t settled_cells() const { return settled_; }
+  std::size_t passing_cells() const { return passing_; }
+
+  /// Cells that have shown one and the same other depth for `seconds`, or that nothing was known of:
+  /// row-major, 1 = so.
+  std::vector<std::uint8_t> unchanged_for(double seconds) const;
+
+ private:
+  struct Cell {
+    CellState state = CellState::same;
+    float depth_m = 0;
+    double since_s = 0;  // when it came to show this
+  };
+  void count(double now_s);
+  bool is_surrounded(std::size_t cell) const;
+
+  SceneChangeSettings settings_;
+  std::size_t width_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint8_t> changed_;  // 1: shows something else, and counts
+  double now_s_ = 0;
+  std::size_t settled_ = 0, passing_ = 0;
+};
+
+}  // namespace calibrd
