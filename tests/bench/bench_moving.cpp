@@ -29,9 +29,9 @@ Estimated estimate_offset(MovingScene& moving, const Scene& scene, const Calibra
   for (double t = 1; t < 1 + seconds; t += kFramePeriod_s) {
     const View frame = moving.expose(t, scene.truth.seed * 100'000 + static_cast<std::uint64_t>(1000 * t));
     const JointHistory joints = moving.joints(t - 0.5, t + 0.5);
-    estimator.add({frame.depth, MovingScene::clock_at(frame.stamp_s), *still.T_base_sensor,
-                   still.depth_correction},
-                  [&](Clock::time_point time) { return joints.positions_at(time); });
+    estimator.add(
+        {frame.depth, MovingScene::clock_at(frame.stamp_s), *still.T_base_sensor, still.depth_correction},
+        [&](Clock::time_point time) { return joints.positions_at(time); });
   }
   return {estimator.estimate(), seconds};
 }
@@ -61,7 +61,8 @@ std::vector<View> moving_views(MovingScene& moving, const Scene& scene, double o
   return views;
 }
 
-void add_errors(const char* what, const CalibrationResult& result, const Pose& reference, json::object& line) {
+void add_errors(const char* what, const CalibrationResult& result, const Pose& reference,
+                json::object& line) {
   json::object errors{{"verdict", name_of(result.verdict)}};
   if (result.T_base_sensor) {
     const Vector6d error = difference(reference, *result.T_base_sensor);
@@ -88,7 +89,7 @@ json::object run_one(std::uint64_t seed, const SceneRobot& robot, const MovingBe
   motion.frame_jitter_s = 1e-3 * options.jitter_ms;
   MovingScene moving(*scene, capture, motion, tables);
   scene->views = still_views(moving, *scene);
-  const auto still = calibrate(robot.model, scene->camera, scene->views);
+  const auto still = calibrate(robot.model, scene->camera, scene->views, {});
   const Pose reference = pose_for_reported_joints(*scene, scene->views.size());
   add_errors("still", still, reference, line);
   if (!still.T_base_sensor) return line;
@@ -99,15 +100,15 @@ json::object run_one(std::uint64_t seed, const SceneRobot& robot, const MovingBe
   line["offset_sigma_ms"] = 1e3 * estimated.offset->sigma_s;
   line["jitter_ms"] = 1e3 * estimated.offset->jitter_s;
   double largest_m = 0;
-  const auto views = moving_views(moving, *scene, estimated.offset->value_s,
-                                  std::hypot(estimated.offset->sigma_s, estimated.offset->jitter_s), largest_m);
+  const auto views =
+      moving_views(moving, *scene, estimated.offset->value_s,
+                   std::hypot(estimated.offset->sigma_s, estimated.offset->jitter_s), largest_m);
   line["timing_error_mm"] = 1e3 * largest_m;
-  add_errors("moving", calibrate(robot.model, scene->camera, views), reference, line);
-  if (options.also_uncorrected) {
-    double ignored = 0;
-    add_errors("uncorrected", calibrate(robot.model, scene->camera, moving_views(moving, *scene, 0, 0, ignored)),
-               reference, line);
-  }
+  add_errors("moving", calibrate(robot.model, scene->camera, views, {}), reference, line);
+  if (!options.also_uncorrected) return line;
+  double ignored = 0;
+  const auto uncorrected = moving_views(moving, *scene, 0, 0, ignored);
+  add_errors("uncorrected", calibrate(robot.model, scene->camera, uncorrected, {}), reference, line);
   return line;
 }
 
@@ -126,7 +127,8 @@ int run_moving(const MovingBenchOptions& options) {
   }
   for (std::uint64_t i = 0; i < options.scenes; ++i) {
     const std::uint64_t seed = options.first_seed + i;
-    std::printf("%s\n", json::serialize(run_one(seed, robots[seed % robots.size()], options, tables)).c_str());
+    std::printf("%s\n",
+                json::serialize(run_one(seed, robots[seed % robots.size()], options, tables)).c_str());
     std::fflush(stdout);
   }
   return 0;

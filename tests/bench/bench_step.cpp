@@ -55,10 +55,11 @@ int run_step(const StepOptions& options) {
   io.run_for(std::chrono::seconds(options.seconds));
   client->stop();
   if (placed_ms.empty()) return stop("no joints have come: " + client->health().reason);
-  std::printf("{\"packets\": %zu, \"known_p50_ms\": %.3f, \"known_p99_ms\": %.3f, \"in_step_p50_ms\": %.3f, "
-              "\"in_step_p99_ms\": %.3f, \"in_step_max_ms\": %.3f}\n",
-              placed_ms.size(), percentile(known_ms, 0.5), percentile(known_ms, 0.99), percentile(placed_ms, 0.5),
-              percentile(placed_ms, 0.99), *std::ranges::max_element(placed_ms));
+  std::printf(
+      "{\"packets\": %zu, \"known_p50_ms\": %.3f, \"known_p99_ms\": %.3f, \"in_step_p50_ms\": %.3f, "
+      "\"in_step_p99_ms\": %.3f, \"in_step_max_ms\": %.3f}\n",
+      placed_ms.size(), percentile(known_ms, 0.5), percentile(known_ms, 0.99), percentile(placed_ms, 0.5),
+      percentile(placed_ms, 0.99), *std::ranges::max_element(placed_ms));
   return 0;
 }
 

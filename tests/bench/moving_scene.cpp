@@ -30,7 +30,8 @@ MovingScene::MovingScene(const Scene& scene, const sim::CaptureOptions& capture,
     : scene_(scene),
       options_(options),
       random_(scene.truth.seed),  // the same cell as the scene's
-      furnished_(sim::furnish(scene.robot->simulated, capture.level, tables->grid.camera.parameters(), random_)),
+      furnished_(
+          sim::furnish(scene.robot->simulated, capture.level, tables->grid.camera.parameters(), random_)),
       model_(furnished_.cell, tables) {
   furnished_.state.sensors[0].T_base_sensor = sim::PoseValues::of(scene.truth.T_base_sensor);
   const auto& names = scene.robot->model.position_names();
@@ -105,7 +106,8 @@ View MovingScene::expose(double time_s, std::uint64_t seed) {
 
 JointHistory MovingScene::joints(double begin_s, double time_s) const {
   JointHistory history(std::chrono::hours(1));
-  for (double t = std::ceil(begin_s / kCycle_s) * kCycle_s; t + options_.joint_latency_s <= time_s; t += kCycle_s)
+  for (double t = std::ceil(begin_s / kCycle_s) * kCycle_s; t + options_.joint_latency_s <= time_s;
+       t += kCycle_s)
     history.add({reported_joints(t), {}, 0, clock_at(t + options_.joint_latency_s)});
   return history;
 }

@@ -44,10 +44,10 @@ class MovingScene {
   sim::Random random_;
   sim::FurnishedCell furnished_;
   sim::SensorModel model_;
-  std::vector<std::size_t> places_;            // in the model's vector, of the simulator's positions
-  std::vector<std::vector<double>> path_;      // true joints, order of the model; finely divided
-  std::vector<double> times_s_;                // when each point of it is passed
-  std::vector<std::size_t> middles_;           // points of it
+  std::vector<std::size_t> places_;        // in the model's vector, of the simulator's positions
+  std::vector<std::vector<double>> path_;  // true joints, order of the model; finely divided
+  std::vector<double> times_s_;            // when each point of it is passed
+  std::vector<std::size_t> middles_;       // points of it
 };
 
 }  // namespace calibrd::bench

@@ -110,10 +110,10 @@ TEST_F(InStep, FramesWaitForTheJointsOfALateController) {
 }
 
 TEST_F(InStep, CloudsCarryTheMomentTheirJointsAreOf) {
-  settings_.joint_latency = 0ms;
   const auto started = start_job(1);
   ASSERT_TRUE(started);
   let_it_end(started->id);
+  std::this_thread::sleep_for(200ms);  // so long the joints below stand
   stand(0.9);
   const auto stamp = Clock::now() - 20ms;
   show_frame(100'000, 1777, stamp);
@@ -164,9 +164,10 @@ class OffsetWatchTest : public ::testing::Test {
                    Clock::duration(0),
                    ""};
   RobotLinkEvents events_ = robot_.events();
-  OffsetWatch watch_{std::make_unique<TimeOffsetEstimator>(VirtualCell(test::test_arm()), test::ideal_kinect2()),
-                     std::make_shared<const LinkReach>(test::test_arm()),
-                     {}};
+  OffsetWatch watch_{
+      std::make_unique<TimeOffsetEstimator>(VirtualCell(test::test_arm()), test::ideal_kinect2()),
+      std::make_shared<const LinkReach>(test::test_arm()),
+      {}};
   std::optional<OffsetBasis> basis_ = OffsetBasis{test::true_T_base_sensor(), {}, 1};
   std::uint64_t link_ = 1, sequence_ = 0;
   Clock::time_point exposed_ = Clock::now(), sent_ = exposed_ - 1s;
