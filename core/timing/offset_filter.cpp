@@ -80,7 +80,7 @@ void OffsetFilter::reset() {
   blocks_ = 0;
   far_in_row_ = 0;
   scatter_weight_ = scatter_squares_ = 0;
-  frame_weight_ = frame_squares_ = frame_variance_ = 0;
+  frame_excess_ = frame_weight_ = 0;
 }
 
 void OffsetFilter::add(const OffsetEquations& frame, double time_s) {
@@ -126,33 +126,27 @@ void OffsetFilter::count_far(double off_s) {
   if (off_s != 0) far_in_row_ += off_s > 0 ? 1 : -1;
 }
 
-/// How far single frames of the block lie about each other: what the stamps' jitter does.
+/// How far single frames of the block lie about each other, beyond what their pixels explain: the stamps'
+/// jitter, as DerSimonian and Laird (1986) tell the variance between studies.
 void OffsetFilter::judge_frames(const OffsetVector& state) {
-  if (block_.size() < 2) return;
-  double sum = 0, weights = 0;
-  std::vector<std::pair<double, double>> alone;  // offset, its variance
+  double sum = 0, weights = 0, squared_weights = 0, count = 0;
+  std::vector<std::pair<double, double>> alone;  // offset, its weight
   for (const auto& frame : block_) {
-    const double worth = frame.information(0, 0);
-    if (worth <= 0) continue;
-    alone.emplace_back(
-        (frame.gradient[0] - frame.information.row(0).tail<kNuisances>().dot(state.tail<kNuisances>())) /
-            worth,
-        1 / worth);
-    sum += worth * alone.back().first;
-    weights += worth;
+    const double weight = frame.information(0, 0);
+    if (weight <= 0) continue;
+    const double explained = frame.information.row(0).tail<kNuisances>().dot(state.tail<kNuisances>());
+    alone.emplace_back((frame.gradient[0] - explained) / weight, weight);
+    sum += weight * alone.back().first;
+    weights += weight;
+    squared_weights += weight * weight;
+    ++count;
   }
   if (alone.size() < 2) return;
-  const double mean = sum / weights,
-               freedom = static_cast<double>(alone.size() - 1) / static_cast<double>(alone.size());
-  const double keep = 1 - 1 / static_cast<double>(settings_.memory_blocks);
-  frame_weight_ *= keep;
-  frame_squares_ *= keep;
-  frame_variance_ *= keep;
-  for (const auto& [offset_s, variance] : alone) {
-    frame_weight_ += freedom;
-    frame_squares_ += (offset_s - mean) * (offset_s - mean);
-    frame_variance_ += freedom * variance;
-  }
+  const double mean = sum / weights, keep = 1 - 1 / static_cast<double>(settings_.memory_blocks);
+  double excess = 1 - count;
+  for (const auto& [offset_s, weight] : alone) excess += weight * (offset_s - mean) * (offset_s - mean);
+  frame_excess_ = keep * frame_excess_ + excess;
+  frame_weight_ = keep * frame_weight_ + weights - squared_weights / weights;
 }
 
 /// Of blocks about the result, over what their equations and the allowance for postures explain.
@@ -170,8 +164,7 @@ std::optional<OffsetFilter::Estimate> OffsetFilter::estimate() const {
   if (blocks_ < settings_.least_blocks || scatter_weight_ <= 0) return std::nullopt;
   const Eigen::LDLT<OffsetMatrix> solver(total_.information);
   const double variance = solver.solve(OffsetVector::Unit(0))[0];
-  const double jitter =
-      frame_weight_ > 0 ? std::max(0.0, (frame_squares_ - frame_variance_) / frame_weight_) : 0;
+  const double jitter = frame_weight_ > 0 ? std::max(0.0, frame_excess_ / frame_weight_) : 0;
   return Estimate{solver.solve(total_.gradient)[0], std::sqrt(variance) * scatter(), std::sqrt(jitter),
                   blocks_};
 }

@@ -98,7 +98,7 @@ class OffsetFilter {
   std::size_t blocks_ = 0;
   int far_in_row_ = 0;                               // signed
   double scatter_weight_ = 0, scatter_squares_ = 0;  // of whitened block innovations
-  double frame_weight_ = 0, frame_squares_ = 0, frame_variance_ = 0;
+  double frame_excess_ = 0, frame_weight_ = 0;       // of single frames about their block
 };
 
 }  // namespace calibrd
