@@ -65,7 +65,7 @@ def main(injected_ms: list[float]):
 
 def run(programs: list, folder: Path, injected_ms: list[float]):
     simulator = programs[0]
-    settings = ("calibration.frames_per_posture=1", "calibration.views=still_or_timed")
+    settings = ("robot.link.latency=0s", f"sensors.{SENSOR}.latency=0s", "calibration.frames_per_posture=1", "calibration.views=still_or_timed")
 
     def serve(*more: str) -> Daemon:
         programs.append(Daemon(folder, simulator.controller_port, simulator.world_file, *settings, *more))

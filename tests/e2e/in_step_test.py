@@ -45,7 +45,7 @@ class InStep(CellTest):
         simulator.tell("PUT", "/motion", mode="run", seed=3, count=12, speed_rad_s=0.5, hold_s=1.0)
         daemon = self.serve(simulator).wait_ready()
         wait_until("views come", lambda: daemon.sensor()["views"]["views"] > 0)
-        simulator.tell("PUT", "/motion", mode="jog", joint="joint_1", speed_rad_s=0.3)
+        simulator.tell("PUT", "/motion", mode="jog", speed_rad_s=0.3)
         wait_until("the robot moves", lambda: daemon.robot()["controller"]["in_motion"])
         simulator.controller_mode("frozen")
         wait_until("they are found frozen", lambda: self.refused(daemon, "joints_frozen") > 0, 5)
@@ -73,7 +73,7 @@ class InStep(CellTest):
         simulator.hurry()
         daemon = self.serve(simulator).wait_ready()
         self.assertEqual(daemon.calibrate(postures=3)["status"], "succeeded")
-        simulator.tell("PUT", "/motion", mode="jog", joint="joint_1", speed_rad_s=0.2)
+        simulator.tell("PUT", "/motion", mode="jog", speed_rad_s=0.2)
         wait_until("a cloud is true", lambda: self.cloud_is_true(daemon, simulator, 0.02))
         for seconds in (0.7, 1.5, 10):
             stopped = processes_of(daemon)
@@ -115,7 +115,8 @@ class TimeOffset(CellTest):
         simulator.controller_mode("normal")
         simulator.tell("PUT", "/controller", latency_s=0.03)
         simulator.hurry()
-        daemon = self.serve(simulator).wait_ready()
+        # Of the links' difference, 50 ms, the configuration knows 10.
+        daemon = self.serve(simulator, "robot.link.latency=20ms", f"sensors.{SENSOR}.latency=30ms").wait_ready()
         offset = daemon.sensor()["time_offset"]
         self.assertFalse(offset["applied"])
         self.assertIn("calibrat", offset["reason"])
@@ -124,7 +125,7 @@ class TimeOffset(CellTest):
         found = wait_until("it is applied", timeout_s=90, condition=lambda: (
             offset if (offset := daemon.sensor()["time_offset"])["applied"] else None))
         print(found)
-        self.assertAlmostEqual(found["value_s"], 0.05, delta=0.008)
+        self.assertAlmostEqual(found["value_s"], 0.04, delta=0.008)
         self.assertEqual(found["source"], "estimated")
 
 
