@@ -11,6 +11,7 @@
 #include "api/service/cell_service.hpp"
 #include "server/live_cell/calibration_jobs.hpp"
 #include "server/live_cell/cloud_maker.hpp"
+#include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
 #include "server/storage/calibration_store.hpp"
@@ -21,6 +22,8 @@ namespace calibrd {
 struct Estimator {
   CalibrateFunction calibrate;
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
+  /// One for each sensor; unset: poses are checked against the robot alone.
+  std::function<std::unique_ptr<DriftWatch>(const CameraModel&)> make_watch = {};
   /// One for each sensor that wants it; unset: time offsets are not estimated.
   std::function<std::unique_ptr<TimeOffsetEstimator>(const CameraModel&)> make_time_offset = {};
 };
@@ -35,6 +38,7 @@ struct LiveCellSettings {
   ViewGateSettings gate;             ///< but for the latency, which is each sensor's
   PoseWatchSettings watch;
   JobSettings jobs;
+  HealerSettings healing;
 };
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
@@ -77,6 +81,7 @@ class LiveCell : public api::CellService {
   std::vector<api::SensorReport> sensors() const override;
   Result<api::SensorReport> sensor(std::string_view id) const override;
   Result<api::PoseReport> pose(std::string_view sensor_id) const override;
+  Result<api::DriftReport> drift(std::string_view sensor_id) const override;
   api::RobotReport robot() const override { return robot_.report(); }
   Result<api::CalibrationReport> start_calibration(const api::CalibrationRequest& request) override;
   Result<api::CalibrationReport> calibration(std::string_view id) const override;
@@ -96,8 +101,9 @@ class LiveCell : public api::CellService {
   };
 
   Result<Entry*> find(std::string_view sensor_id) const;
-  std::optional<Pose> guess_for(const Entry& entry) const;
-  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin);
+  std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
+  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
+               std::vector<View> views = {});
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
@@ -115,10 +121,11 @@ class LiveCell : public api::CellService {
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
-  CalibrationJobs jobs_;                                                // last: its thread uses the others
+  CalibrationJobs jobs_;                                                // its thread uses the others
+  Healer healer_;                                                       // last: its thread uses jobs_
 };
 
-/// core's estimator for this robot. The returned functions refer to `model` and `cell`.
-Estimator core_estimator(const VirtualCell& cell);
+/// core's estimator for this robot. The returned functions refer to `cell`.
+Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift);
 
 }  // namespace calibrd

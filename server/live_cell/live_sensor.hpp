@@ -14,6 +14,7 @@
 #include "core/calibration/check_pose.hpp"
 #include "drivers/sensor/depth_source.hpp"
 #include "server/live_cell/collect_task.hpp"
+#include "server/live_cell/drift_monitor.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/offset_watch.hpp"
 #include "server/live_cell/pose_watch.hpp"
@@ -53,11 +54,12 @@ struct LiveSensorSettings {
 class LiveSensor {
  public:
   /// `robot` must outlive it.
+  /// `watch`: nothing, or what follows the pose frame by frame.
   /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
   /// `time_offset`: null when the configured latencies are to be taken for true.
   LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-             std::function<void(const api::PoseReport&)> on_pose = {},
-             std::unique_ptr<TimeOffsetEstimator> time_offset = nullptr);
+             std::function<void(const api::PoseReport&)> on_pose = {}, std::unique_ptr<DriftWatch> watch = {},
+             std::unique_ptr<TimeOffsetEstimator> time_offset = {});
   ~LiveSensor();
 
   void start(std::unique_ptr<DepthSource> source);
@@ -73,8 +75,9 @@ class LiveSensor {
 
   const std::string& basis() const { return settings_.basis; }
 
-  /// The pose being served. A stored one is unverified until a check agrees.
-  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
+  /// The pose being served. A stored one is unverified until a check agrees. `views`: those it was just found
+  /// from.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
@@ -91,6 +94,9 @@ class LiveSensor {
   std::shared_ptr<const Sighting> newest() const;
 
   api::PoseReport pose() const;
+  api::DriftReport drift() const;
+  /// Where a sensor that has moved is now, as far as its background tells.
+  std::optional<Pose> seen_pose() const;
   api::SensorReport report() const;
   /// Why it gives no views now, and what to do; empty: it does.
   std::string hindrance() const;
@@ -103,6 +109,8 @@ class LiveSensor {
   void finish(FrameDecision decision);
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
+  void watch(const Sighting& sighting);
+  bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);
@@ -115,6 +123,8 @@ class LiveSensor {
   const CheckFunction check_;
   const std::function<void(const api::PoseReport&)> on_pose_;
   std::atomic<bool> is_stopping_{false};
+
+  const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
   const std::shared_ptr<const LinkReach> reach_;
@@ -133,6 +143,7 @@ class LiveSensor {
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
   std::optional<PoseEvidence> evidence_;
+  Clock::time_point checked_at_;
   Clock::time_point lost_at_;      // the last moment the source was away: frames before it prove nothing now
   std::uint64_t pose_number_ = 0;  // counts set_pose()
   struct Told {
