@@ -168,7 +168,7 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (sighting.stamp <= lost_at_) return;
   const bool was_plausible = watch_.is_plausible();
   if (monitor_->verdict() == DriftVerdict::sensor_moved) watch_.on_sensor_moved();
-  if (monitor_->is_in_place()) watch_.on_background_in_place(Clock::now());
+  if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
 }
@@ -192,7 +192,7 @@ void LiveSensor::check(const Sighting& sighting) {
   if (number != pose_number_) return;
   if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
-  watch_.on_check(checked, Clock::now());
+  watch_.on_check(checked, sighting.stamp);  // not now: a check proves nothing of later than its frame
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
 }
