@@ -57,6 +57,7 @@ struct RobotConfig {
   double max_position = 100;
   double max_velocity = 100;
   std::vector<std::array<double, 2>> joint_ranges;
+  bool trust_in_motion = true;
   LinkConfig link;
   std::map<std::string, JointConfig> joints;
 };
@@ -73,6 +74,7 @@ struct SensorConfig {
   CameraModel camera{.width = 512, .height = 424};
   int depth_unit_um = 1000;
   Duration latency{0};
+  std::string time_offset = "estimate";
   std::optional<Pose> guess_T_base_sensor;
   std::map<std::string, std::array<double, 3>> workspace;  ///< name -> m, base frame
 };
@@ -100,6 +102,7 @@ struct CalibrationConfig {
   Duration settle_time{300};
   int frames_per_posture = 5;
   Duration collect_timeout{600'000};
+  std::string views = "still";
 };
 
 struct MotionRouteConfig {

@@ -49,6 +49,10 @@ void declare_robot(std::vector<Setting>& table) {
       "A message with a velocity beyond it is damage and is dropped.");
   key("joint_ranges", &RobotConfig::joint_ranges, ranges(), "rad, m",
       "Where each joint can be, [lower, upper] in wire order; a message outside is dropped.");
+  key("trust_in_motion", &RobotConfig::trust_in_motion, flag(), "",
+      "A robot whose controller says that it is in motion gives no view of a still robot, and joints that "
+      "repeat "
+      "meanwhile are frozen. false: for controllers that say so while the robot stands.");
 }
 
 void declare_link(std::vector<Setting>& table) {
@@ -146,6 +150,10 @@ void declare_sensors(std::vector<Setting>& table) {
       "Unit of the depth values to ask the device for; the other one is taken where it is not offered.");
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
+  key("time_offset", &SensorConfig::time_offset, one_of({"estimate", "off"}), "",
+      "estimate: how much later frames are stamped than joints, beyond both latencies, is found from the "
+      "robot's "
+      "motion once the sensor is calibrated, and applied. off: the latencies are taken for true.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
       "Rough T_base_sensor; only makes the first calibration faster.");
 }
@@ -197,6 +205,10 @@ void declare_calibration(std::vector<Setting>& table) {
       "Frames averaged for each posture.");
   key("collect_timeout", &CalibrationConfig::collect_timeout, duration(1s, 24h), "",
       "A calibration that has not seen its postures after this time fails.");
+  key("views", &CalibrationConfig::views, one_of({"still", "still_or_timed"}), "",
+      "still_or_timed: frames of a moving robot are used as well, where the time offset is known so well "
+      "that no "
+      "point of it is farther than 0.3 mm from where the joints put it.");
 }
 
 void declare_rest(std::vector<Setting>& table) {

@@ -130,6 +130,7 @@ RobotMotionSettings motion_settings(const MotionConfig& motion) {
 
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
   SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}, sensor.mirror};
+  setup.estimates_time_offset = sensor.time_offset == "estimate";
   for (const auto& [name, p] : sensor.workspace) setup.workspace.push_back({name, {p[0], p[1], p[2]}});
   return setup;
 }
@@ -155,6 +156,9 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.gate.stale_after = config.robot.link.stale_after;
   settings.gate.settle_time = config.calibration.settle_time;
   settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
+  settings.gate.trust_in_motion = config.robot.trust_in_motion;
+  settings.gate.timed_views = settings.jobs.collector.moving_views =
+      config.calibration.views == "still_or_timed";
   settings.watch.max_unverified = config.pose.max_unverified;
   settings.watch.check_period = config.pose.check_period;
   settings.healing.mode = healing_mode(config.drift.healing);

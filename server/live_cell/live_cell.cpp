@@ -48,7 +48,9 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
       estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); },
-      make_monitor(setup));
+      make_monitor(setup),
+      setup.estimates_time_offset && estimator_.make_time_offset ? estimator_.make_time_offset(setup.camera)
+                                                                 : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();
@@ -219,6 +221,9 @@ Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
                const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
       return checker->check(view, T_base_sensor, correction);
     };
+  };
+  estimator.make_time_offset = [&cell](const CameraModel& camera) {
+    return std::make_unique<TimeOffsetEstimator>(cell, camera);
   };
   estimator.make_watch = [&cell, drift](const CameraModel& camera) {
     return std::make_unique<DriftWatch>(cell, camera, drift);

@@ -25,6 +25,8 @@ struct Estimator {
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
   /// One for each sensor; unset: poses are checked against the robot alone.
   std::function<std::unique_ptr<DriftWatch>(const CameraModel&)> make_watch = {};
+  /// One for each sensor that wants it; unset: time offsets are not estimated.
+  std::function<std::unique_ptr<TimeOffsetEstimator>(const CameraModel&)> make_time_offset = {};
 };
 
 struct LiveCellSettings {
@@ -56,6 +58,7 @@ struct SensorSetup {
   std::optional<Pose> guess_T_base_sensor;
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
   bool mirror = false;                         ///< its rows are flipped before anybody sees them
+  bool estimates_time_offset = true;
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.

@@ -49,6 +49,7 @@ Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequ
   auto collector = settings_.jobs.collector;
   collector.postures = request.postures;
   collector.frames_per_posture = 1;  // a recording holds what the sensor delivered
+  collector.moving_views = false;    // ... and cannot tell how well its joints are known
   const auto task = std::make_shared<CollectTask>(collector);
   {
     const std::lock_guard lock(entry.recording);

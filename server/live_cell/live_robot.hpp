@@ -44,10 +44,10 @@ class LiveRobot {
   /// the newest. Errors: JointMappingError.
   Result<std::vector<double>> controller_values(std::span<const double> positions_rad) const;
 
-  /// Joints are there and fresh.
-  bool is_stale(const JointState& joints) const {
-    return Clock::now() - joints.stamp > stillness_.stale_after;
-  }
+  /// They are too old, or the controller goes on sending the same ones while it says that it moves.
+  bool is_stale(const JointState& joints) const;
+  /// Of the link, since start.
+  std::uint64_t connects() const;
 
   /// Also computes where the links are.
   api::RobotReport report() const;

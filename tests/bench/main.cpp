@@ -66,6 +66,37 @@ CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   return command;
 }
 
+CLI::App* add_step(CLI::App& app, StepOptions& step) {
+  CLI::App* command =
+      app.add_subcommand("step", "time from a controller's packet to the virtual cell in step with it");
+  command->add_option("URDF", step.urdf)->required();
+  command->add_option("--models", step.models);
+  command->add_option("--port", step.port, "of a controller on this machine")->check(CLI::Range(1, 65535));
+  command->add_option("--seconds", step.seconds)->check(CLI::Range(1, 86400));
+  return command;
+}
+
+CLI::App* add_moving(CLI::App& app, MovingBenchOptions& moving) {
+  CLI::App* command =
+      app.add_subcommand("moving", "calibrate from views of a moving robot, and of the same postures still");
+  command->add_option("--robot", moving.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", moving.models, "folders to look robot models up in");
+  command->add_option("--level", moving.level)->check(CLI::IsMember({"clean", "cell", "field"}));
+  command->add_option("--first-seed", moving.first_seed);
+  command->add_option("--scenes", moving.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", moving.postures)->check(CLI::Range(2, 1000));
+  command->add_option("--speed-m-s", moving.speed_m_s, "of the robot's fastest point")
+      ->check(CLI::Range(0.02, 2.0));
+  command->add_option("--offset-ms", moving.offset_ms, "how much later frames arrive than joints")
+      ->check(CLI::Range(-150.0, 250.0));
+  command->add_option("--jitter-ms", moving.jitter_ms)->check(CLI::Range(0.0, 50.0));
+  command->add_option("--learn-s", moving.learn_s, "motion seen before the views are taken")
+      ->check(CLI::Range(1.0, 3600.0));
+  command->add_flag("--uncorrected", moving.also_uncorrected, "also with the offset left out");
+  return command;
+}
+
 CLI::App* add_register(CLI::App& app, RegisterOptions& clouds) {
   CLI::App* command = app.add_subcommand("register", "register two PLY clouds, starting as they lie");
   command->add_option("--source", clouds.source)->required();
@@ -121,11 +152,17 @@ int main(int argc, char** argv) {
   const CLI::App* register_command = add_register(app, clouds);
   const CLI::App* watch_command = add_watch(app, watch);
   const CLI::App* track_command = add_track(app, track);
+  StepOptions step;
+  MovingBenchOptions moving;
+  const CLI::App* step_command = add_step(app, step);
+  const CLI::App* moving_command = add_moving(app, moving);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (step_command->parsed()) return run_step(step);
+  if (moving_command->parsed()) return run_moving(moving);
   if (register_command->parsed()) return run_register(clouds);
   if (watch_command->parsed()) return run_watch(watch);
   if (track_command->parsed()) return run_track(track);
