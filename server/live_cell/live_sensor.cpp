@@ -124,7 +124,7 @@ void LiveSensor::finish(FrameDecision decision) {
   offset_.offer(sighting);
   serve_tasks(*sighting, usable || timed);
   watch(*sighting);
-  if (usable) check(*sighting);
+  if (usable || timed) check(*sighting);
 }
 
 std::vector<std::shared_ptr<CollectTask>> LiveSensor::open_tasks() {
