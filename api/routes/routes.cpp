@@ -13,6 +13,8 @@ Router make_routes(CellService& service) {
   add_calibration_routes(router, service);
   add_next_posture_routes(router, service);
   add_recording_routes(router, service);
+  add_merged_cloud_routes(router, service);
+  add_obstacle_routes(router, service);
   return router;
 }
 

@@ -14,6 +14,8 @@ void add_pose_routes(Router& router, CellService& service);
 void add_sensor_routes(Router& router, CellService& service);
 void add_robot_routes(Router& router, CellService& service);
 void add_calibration_routes(Router& router, CellService& service);
+void add_merged_cloud_routes(Router& router, CellService& service);
+void add_obstacle_routes(Router& router, CellService& service);
 void add_next_posture_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);
 void add_health_routes(Router& router, CellService& service);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/service/cell_reports.hpp"
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
 
@@ -42,6 +43,13 @@ class CellService {
   /// still.
   virtual Result<CaptureArchive> record_capture(const CaptureRequest& request) = 0;
   virtual Result<Cloud> cloud(const CloudRequest& request) const = 0;
+
+  /// What is neither robot nor remembered background. `sensor_id` empty: for all sensors.
+  virtual Result<ObstaclesReport> obstacles(const std::string& sensor_id) const = 0;
+  virtual Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const = 0;
+  /// Starts a calibration of each sensor, so that one motion of the robot serves all. The error of the first
+  /// when none could be started.
+  virtual Result<CellCalibrations> start_calibrations(const CellCalibrationRequest& request) = 0;
 };
 
 }  // namespace calibrd::api
