@@ -114,6 +114,7 @@ json::object heading_json(const PoseReport& pose) {
 json::object full_body(const PoseReport& pose) {
   auto body = heading_json(pose);
   if (!pose.valid) body["reason"] = pose.reason;
+  body["candidate"] = pose.candidate.empty() ? json::value(nullptr) : json::value(pose.candidate);
   body["job"] = pose.job.empty() ? json::value(nullptr) : json::value(pose.job);
   body["max_unverified_s"] = pose.max_unverified.count();
   body["last_check"] = check_json(pose);

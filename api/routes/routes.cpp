@@ -9,6 +9,7 @@ Router make_routes(CellService& service) {
   add_health_routes(router, service);
   add_pose_routes(router, service);
   add_sensor_routes(router, service);
+  add_drift_routes(router, service);
   add_robot_routes(router, service);
   add_calibration_routes(router, service);
   add_next_posture_routes(router, service);

@@ -12,6 +12,7 @@ Router make_routes(CellService& service);
 // The parts it is made of.
 void add_pose_routes(Router& router, CellService& service);
 void add_sensor_routes(Router& router, CellService& service);
+void add_drift_routes(Router& router, CellService& service);
 void add_robot_routes(Router& router, CellService& service);
 void add_calibration_routes(Router& router, CellService& service);
 void add_merged_cloud_routes(Router& router, CellService& service);

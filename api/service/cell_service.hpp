@@ -23,11 +23,12 @@ class CellService {
  public:
   virtual ~CellService() = default;
 
-  virtual CellReport cell() const = 0;                                    ///< quick
-  virtual std::vector<SensorReport> sensors() const = 0;                  ///< quick
-  virtual Result<SensorReport> sensor(std::string_view id) const = 0;     ///< quick
-  virtual Result<PoseReport> pose(std::string_view sensor_id) const = 0;  ///< quick
-  virtual RobotReport robot() const = 0;                                  ///< quick
+  virtual CellReport cell() const = 0;                                      ///< quick
+  virtual std::vector<SensorReport> sensors() const = 0;                    ///< quick
+  virtual Result<SensorReport> sensor(std::string_view id) const = 0;       ///< quick
+  virtual Result<PoseReport> pose(std::string_view sensor_id) const = 0;    ///< quick
+  virtual Result<DriftReport> drift(std::string_view sensor_id) const = 0;  ///< quick
+  virtual RobotReport robot() const = 0;                                    ///< quick
 
   /// Starts a calibration, or finds the one an equal request with the same Idempotency-Key started.
   virtual Result<CalibrationReport> start_calibration(const CalibrationRequest& request) = 0;

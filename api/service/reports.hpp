@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/calibration/calibrate.hpp"
+#include "core/drift/drift_watch.hpp"
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/planning/next_posture.hpp"
@@ -41,13 +42,40 @@ struct PoseReport {
   std::string base_frame;
   std::string sensor_frame;
   PoseState state = PoseState::uncalibrated;
-  bool valid = false;  ///< state is calibrated and passed_check_age is below max_unverified
-  std::string reason;  ///< why it is not valid, and what to do; empty while it is
-  std::string job;     ///< id of a calibration under way; empty: none
+  bool valid = false;     ///< state is calibrated and passed_check_age is below max_unverified
+  std::string reason;     ///< why it is not valid, and what to do; empty while it is
+  std::string job;        ///< id of a calibration under way; empty: none
+  std::string candidate;  ///< id of one that was made after a move and waits to be activated; empty: none
   std::optional<Known> known;
   std::optional<CheckReport> last_check;    ///< agreeing or not
   std::optional<Seconds> passed_check_age;  ///< since the last check that agreed
   Seconds max_unverified{0};
+};
+
+/// The watch over a pose in one second.
+struct DriftSample {
+  Clock::time_point stamp;
+  double statistic = 0;  ///< the largest
+  double shift_m = 0, turn_rad = 0, depth_offset_change_m = 0;
+};
+
+/// The verdict became this.
+struct DriftEvent {
+  Clock::time_point stamp;
+  std::string verdict;
+};
+
+/// What the watch over a sensor's pose says.
+struct DriftReport {
+  std::string sensor_id;
+  PoseState pose_state = PoseState::uncalibrated;
+  std::string healing;    ///< "automatic", "ask", "off"
+  std::string candidate;  ///< id of a calibration that waits to be activated; empty: none
+  bool watched = false;   ///< there is a pose to watch
+  calibrd::DriftReport now;
+  std::optional<Seconds> age;       ///< of the newest frame that was looked at
+  std::vector<DriftSample> series;  ///< oldest first, the last ten minutes
+  std::vector<DriftEvent> events;   ///< oldest first
 };
 
 /// What happened to the frames of a sensor on their way to becoming views.
@@ -123,6 +151,9 @@ struct CalibrationRequest {
   bool activate = true;
   std::string idempotency_key;  ///< empty: none
   std::string fingerprint;      ///< equal for requests that ask for the same
+  /// How long to go on collecting once a posture has been seen; nothing: until all have been.
+  std::optional<Seconds> patience;
+  bool after_move = false;  ///< the sensor has moved: start from where its background says it is
 };
 
 /// A calibration, under way or ended. It succeeded exactly when its verdict is accepted.

@@ -57,6 +57,8 @@ class DriftWatch {
  public:
   /// The robot of `cell` must outlive it.
   DriftWatch(const VirtualCell& cell, const CameraModel& camera, const DriftSettings& settings);
+  DriftWatch(const DriftWatch&) = delete;
+  DriftWatch& operator=(const DriftWatch&) = delete;
 
   /// Another pose, its background not known yet.
   void set_pose(const Pose& T_base_sensor);

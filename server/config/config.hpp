@@ -82,6 +82,17 @@ struct PoseConfig {
   Duration check_period{1000};
 };
 
+struct DriftConfig {
+  double tolerance_mm = 0.5, tolerance_mrad = 0.5;
+  double false_alarms_per_year = 0.1;
+  double depth_bias_mm = 3;
+  Duration absorb_after{60'000};
+  std::string healing = "automatic";
+  int healing_postures = 3;
+  Duration healing_patience{1500};
+  Duration healing_cooldown{10'000};
+};
+
 struct CalibrationConfig {
   int postures = 5;
   double min_posture_distance_deg = 10;
@@ -106,6 +117,7 @@ struct Config {
   RobotConfig robot;
   std::map<std::string, SensorConfig> sensors;
   PoseConfig pose;
+  DriftConfig drift;
   CalibrationConfig calibration;
   StorageConfig storage;
   LogConfig log;

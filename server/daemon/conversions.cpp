@@ -15,6 +15,11 @@ ImageKind image_kind(const std::string& name) {
   return name == "color" ? ImageKind::color : ImageKind::infrared;
 }
 
+HealingMode healing_mode(const std::string& name) {
+  if (name == "off") return HealingMode::off;
+  return name == "ask" ? HealingMode::ask : HealingMode::automatic;
+}
+
 int place_of(const std::string& joint, const std::vector<std::string>& model_joints) {
   const auto found = std::find(model_joints.begin(), model_joints.end(), joint);
   return found == model_joints.end() ? -1 : static_cast<int>(found - model_joints.begin());
@@ -98,6 +103,16 @@ SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
   return setup;
 }
 
+DriftSettings drift_settings(const DriftConfig& drift) {
+  DriftSettings settings;
+  settings.shift.tolerance_m = 1e-3 * drift.tolerance_mm;
+  settings.shift.tolerance_rad = 1e-3 * drift.tolerance_mrad;
+  settings.shift.false_alarms_per_year = drift.false_alarms_per_year;
+  settings.depth_bias_m = 1e-3 * drift.depth_bias_mm;
+  settings.absorb_s = std::chrono::duration<double>(drift.absorb_after).count();
+  return settings;
+}
+
 LiveCellSettings cell_settings(const Config& config, const std::string& version) {
   LiveCellSettings settings;
   settings.version = version;
@@ -111,6 +126,10 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
   settings.watch.max_unverified = config.pose.max_unverified;
   settings.watch.check_period = config.pose.check_period;
+  settings.healing.mode = healing_mode(config.drift.healing);
+  settings.healing.postures = config.drift.healing_postures;
+  settings.healing.patience = config.drift.healing_patience;
+  settings.healing.cooldown = config.drift.healing_cooldown;
   settings.jobs.collector.postures = config.calibration.postures;
   settings.jobs.collector.min_distance_rad = config.calibration.min_posture_distance_deg * kRadPerDeg;
   settings.jobs.collector.frames_per_posture = config.calibration.frames_per_posture;

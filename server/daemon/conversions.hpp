@@ -19,6 +19,7 @@ api::HttpServerSettings http_settings(const Config& config);
 StateClientSettings link_settings(const RobotConfig& robot);
 SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor);
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor);
+DriftSettings drift_settings(const DriftConfig& drift);
 LiveCellSettings cell_settings(const Config& config, const std::string& version);
 
 /// Joints that the configuration does not name follow the controller's value at their own place in the model.

@@ -81,9 +81,10 @@ struct Daemon::Parts {
   Status make_cell(const Config& config, const std::string& version) {
     auto mapping = make_mapping(config, *model);
     if (!mapping) return mapping.error();
-    cell = std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell,
-                                      *std::move(mapping), *store, core_estimator(*virtual_cell),
-                                      CellLog{log_calibration, log_pose, log_error});
+    cell =
+        std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell, *std::move(mapping),
+                                   *store, core_estimator(*virtual_cell, drift_settings(config.drift)),
+                                   CellLog{log_calibration, log_pose, log_error});
     for (const auto& [id, sensor] : config.sensors)
       if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
     return Done{};

@@ -18,7 +18,9 @@ struct CalibrationJobs::Job {
   LiveSensor* sensor = nullptr;
   std::optional<Pose> guess;
   std::shared_ptr<CollectTask> task;
-  Clock::time_point deadline;  ///< of collecting
+  Clock::time_point deadline;                      ///< of collecting
+  std::optional<Clock::time_point> patient_until;  ///< then what has been seen is enough
+  std::vector<View> views;                         ///< that it was computed from
   std::atomic<bool> cancelled{false};
   bool is_ending = false;  ///< its end is being stored
 };

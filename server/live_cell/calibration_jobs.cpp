@@ -40,7 +40,11 @@ CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction cali
 
 CalibrationJobs::~CalibrationJobs() {
   request_stop();
-  thread_.join();
+  join();
+}
+
+void CalibrationJobs::join() {
+  if (thread_.joinable()) thread_.join();
 }
 
 void CalibrationJobs::request_stop() {
@@ -107,6 +111,8 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
+  if (request.patience)
+    job->patient_until = Clock::now() + std::chrono::duration_cast<Clock::duration>(*request.patience);
   job->task = std::make_shared<CollectTask>(
       collector,
       [this] {

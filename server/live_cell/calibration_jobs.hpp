@@ -33,8 +33,8 @@ struct JobSettings {
 class CalibrationJobs {
  public:
   /// Called for a calibration that has just become the current one. `seen_at`: when its last view was taken.
-  using Publish =
-      std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at)>;
+  using Publish = std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at,
+                                     std::vector<View> views)>;
   using Log = std::function<void(const api::CalibrationReport&)>;
 
   /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
@@ -55,6 +55,8 @@ class CalibrationJobs {
   /// Cancels everything under way and ends the thread; a computation under way ends at its next look at the
   /// flag.
   void request_stop();
+  /// Waits for the thread to end; nobody is told of anything after it.
+  void join();
 
  private:
   struct Job;
@@ -66,6 +68,7 @@ class CalibrationJobs {
                       const std::optional<Pose>& guess);
   void run();
   JobPointer next_ready();
+  void end_patience(Clock::time_point now);
   std::vector<JobPointer> take_overdue(Clock::time_point now);
   static void begin_computing(Job& job);
   void compute(const JobPointer& job);

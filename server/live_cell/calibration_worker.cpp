@@ -14,6 +14,7 @@ using api::JobStatus;
 namespace {
 
 constexpr auto kLongWait = std::chrono::hours(1);
+constexpr auto kImpatience = std::chrono::milliseconds(50);  // how often is looked whether a posture has come
 
 /// Why a calibration without an accepted result has failed, from its reasons.
 std::string failure_message(const CalibrationResult& result) {
@@ -40,16 +41,22 @@ std::optional<PoseEvidence> evidence_of(const CalibrationResult& result, Method 
 
 }  // namespace
 
+/// When to see whether a job has waited long enough.
+static Clock::time_point next_look(const std::optional<Clock::time_point>& patient_until) {
+  return patient_until ? std::max(*patient_until, Clock::now() + kImpatience) : Clock::time_point::max();
+}
+
 void CalibrationJobs::run() {
   std::unique_lock lock(mutex_);
   while (!is_stopping_) {
+    end_patience(Clock::now());
     const auto overdue = take_overdue(Clock::now());
     const auto ready = next_ready();
     if (ready) begin_computing(*ready);
     if (overdue.empty() && !ready) {
       auto wake = Clock::now() + kLongWait;
       for (const auto& [id, job] : jobs_)
-        if (job->task->is_open()) wake = std::min(wake, job->deadline);
+        if (job->task->is_open()) wake = std::min({wake, job->deadline, next_look(job->patient_until)});
       changed_.wait_until(lock, wake);
       continue;
     }
@@ -58,6 +65,13 @@ void CalibrationJobs::run() {
     if (ready) compute(ready);
     lock.lock();
   }
+}
+
+/// Jobs that would rather begin than wait; the caller holds mutex_.
+void CalibrationJobs::end_patience(Clock::time_point now) {
+  for (const auto& [id, job] : jobs_)
+    if (job->patient_until && now >= *job->patient_until && job->task->is_open())
+      job->task->settle_for_less();
 }
 
 /// The caller holds mutex_.
@@ -97,7 +111,8 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
 }
 
 void CalibrationJobs::compute(const JobPointer& job) {
-  const auto views = job->task->take_views();
+  job->views = job->task->take_views();
+  const auto& views = job->views;
   const auto seen_at = time_of_last(views);
   auto result = calibrate(job, views);
   {
@@ -158,7 +173,8 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   report.finished = std::chrono::system_clock::now();
   report.progress = 1;
   report.postures_seen = job->task->seen();
-  if (store_end(report, job->sensor->basis()) && report.current) publish_(report, seen_at);
+  if (store_end(report, job->sensor->basis()) && report.current)
+    publish_(report, seen_at, std::move(job->views));
   log_(report);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);

@@ -43,6 +43,13 @@ void CollectTask::cancel() {
   ended_.notify_all();
 }
 
+void CollectTask::settle_for_less() {
+  const std::lock_guard lock(mutex_);
+  if (is_cancelled_) return;
+  collector_.settle_for_less();
+  if (collector_.is_complete()) ended_.notify_all();
+}
+
 bool CollectTask::is_open() const {
   const std::lock_guard lock(mutex_);
   return !is_cancelled_ && !collector_.is_complete();

@@ -25,6 +25,8 @@ class CollectTask {
   /// The sensor was lost: views of before and after it never come together. A complete task keeps its own.
   void start_over();
   void cancel();
+  /// What has been seen is enough, if anything has: the task is complete.
+  void settle_for_less();
 
   bool is_open() const;  ///< neither complete nor cancelled: wants more views
   bool is_complete() const;

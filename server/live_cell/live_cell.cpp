@@ -20,17 +20,25 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
+      cloud_merger_(virtual_cell),
+      obstacle_watch_(virtual_cell),
       jobs_(
           store, estimator_.calibrate,
-          [this](const auto& calibration, auto seen_at) {
-            publish(calibration, {seen_at, false, {}});
+          [this](const auto& calibration, auto seen_at, auto views) {
+            publish(calibration, {seen_at, false, {}}, std::move(views));
           },
-          log_.on_calibration, settings_.jobs) {}
+          [this](const auto& calibration) {
+            if (log_.on_calibration) log_.on_calibration(calibration);
+            healer_.on_calibration(calibration);
+          },
+          settings_.jobs),
+      healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
 
 LiveCell::~LiveCell() {
   request_stop();
   // Sensors tell jobs of complete postures, and jobs refer to sensors: the threads of the former end first.
   for (const auto& [id, entry] : entries_) entry->sensor->join();
+  jobs_.join();  // it tells the healer, which ends first
 }
 
 Status LiveCell::add_sensor(const SensorSetup& setup) {
@@ -41,7 +49,8 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   const auto basis = robot_basis_ + camera_basis(setup.camera, setup.mirror);
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
-      estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); });
+      estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); },
+      estimator_.make_watch ? estimator_.make_watch(setup.camera) : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();
@@ -63,6 +72,7 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
   if (pose.state == api::PoseState::drifted && pose.known) store_drift(pose);
   if (log_.on_pose) log_.on_pose(pose);
+  healer_.on_pose(pose);
 }
 
 /// Where this cannot be stored, the pose is drifted all the same, until a restart.
@@ -85,14 +95,17 @@ void LiveCell::request_stop() {
     const std::lock_guard lock(entry->recording);
     if (entry->recording_task) entry->recording_task->cancel();
   }
+  healer_.request_stop();
   jobs_.request_stop();
 }
 
-void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin) {
+void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
+                       std::vector<View> views) {
   const auto entry = entries_.find(calibration.sensor_id);
   if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
   entry->second->sensor->set_pose(
-      {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin);
+      {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin,
+      std::move(views));
 }
 
 Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
@@ -103,7 +116,8 @@ Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
 
 /// The last pose is a better start than the configured guess: sensors are knocked by less than guesses are
 /// wrong. One that is known to be wrong is none. Nothing: the calibration finds the start itself.
-std::optional<Pose> LiveCell::guess_for(const Entry& entry) const {
+std::optional<Pose> LiveCell::guess_for(const Entry& entry, const api::CalibrationRequest& request) const {
+  if (request.after_move) return entry.sensor->seen_pose();
   const auto pose = entry.sensor->plausible_pose();
   return pose ? pose : entry.setup.guess_T_base_sensor;
 }
@@ -135,13 +149,23 @@ Result<api::PoseReport> LiveCell::pose(std::string_view sensor_id) const {
   if (!entry) return entry.error();
   auto report = (*entry)->sensor->pose();
   report.job = jobs_.active(report.sensor_id);
+  report.candidate = healer_.candidate(report.sensor_id);
+  return report;
+}
+
+Result<api::DriftReport> LiveCell::drift(std::string_view sensor_id) const {
+  const auto entry = find(sensor_id);
+  if (!entry) return entry.error();
+  auto report = (*entry)->sensor->drift();
+  report.healing = name_of(healer_.mode());
+  report.candidate = healer_.candidate(report.sensor_id);
   return report;
 }
 
 Result<api::CalibrationReport> LiveCell::start_calibration(const api::CalibrationRequest& request) {
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
-  return jobs_.start(request, *(*entry)->sensor, guess_for(**entry));
+  return jobs_.start(request, *(*entry)->sensor, guess_for(**entry, request));
 }
 
 Result<api::CalibrationReport> LiveCell::calibration(std::string_view id) const {
@@ -249,7 +273,7 @@ Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {
   return clouds_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
 }
 
-Estimator core_estimator(const VirtualCell& cell) {
+Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
   Estimator estimator;
   estimator.calibrate = [&cell](const CameraModel& camera, std::span<const View> views,
                                 const CalibrationSettings& settings) {
@@ -260,6 +284,9 @@ Estimator core_estimator(const VirtualCell& cell) {
                const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
       return checker->check(view, T_base_sensor, correction);
     };
+  };
+  estimator.make_watch = [&cell, drift](const CameraModel& camera) {
+    return std::make_unique<DriftWatch>(cell, camera, drift);
   };
   return estimator;
 }

@@ -11,8 +11,11 @@
 #include "api/service/cell_service.hpp"
 #include "server/live_cell/calibration_jobs.hpp"
 #include "server/live_cell/cloud_maker.hpp"
+#include "server/live_cell/cloud_merger.hpp"
+#include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
+#include "server/live_cell/obstacle_watch.hpp"
 #include "server/storage/calibration_store.hpp"
 
 namespace calibrd {
@@ -21,6 +24,8 @@ namespace calibrd {
 struct Estimator {
   CalibrateFunction calibrate;
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
+  /// One for each sensor; unset: poses are checked against the robot alone.
+  std::function<std::unique_ptr<DriftWatch>(const CameraModel&)> make_watch = {};
 };
 
 struct LiveCellSettings {
@@ -33,6 +38,7 @@ struct LiveCellSettings {
   ViewGateSettings gate;             ///< but for the latency, which is each sensor's
   PoseWatchSettings watch;
   JobSettings jobs;
+  HealerSettings healing;
 };
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
@@ -74,6 +80,7 @@ class LiveCell : public api::CellService {
   std::vector<api::SensorReport> sensors() const override;
   Result<api::SensorReport> sensor(std::string_view id) const override;
   Result<api::PoseReport> pose(std::string_view sensor_id) const override;
+  Result<api::DriftReport> drift(std::string_view sensor_id) const override;
   api::RobotReport robot() const override { return robot_.report(); }
   Result<api::CalibrationReport> start_calibration(const api::CalibrationRequest& request) override;
   Result<api::CalibrationReport> calibration(std::string_view id) const override;
@@ -83,6 +90,9 @@ class LiveCell : public api::CellService {
   Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
+  Result<api::ObstaclesReport> obstacles(const std::string& sensor_id) const override;
+  Result<api::MergedCloud> merged_cloud(const api::MergedCloudRequest& request) const override;
+  Result<api::CellCalibrations> start_calibrations(const api::CellCalibrationRequest& request) override;
 
  private:
   struct Entry {
@@ -93,8 +103,9 @@ class LiveCell : public api::CellService {
   };
 
   Result<Entry*> find(std::string_view sensor_id) const;
-  std::optional<Pose> guess_for(const Entry& entry) const;
-  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin);
+  std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
+  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
+               std::vector<View> views = {});
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
@@ -111,11 +122,14 @@ class LiveCell : public api::CellService {
   LiveRobot robot_;
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
+  mutable CloudMerger cloud_merger_;
+  mutable ObstacleWatch obstacle_watch_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
-  CalibrationJobs jobs_;                                                // last: its thread uses the others
+  CalibrationJobs jobs_;                                                // its thread uses the others
+  Healer healer_;                                                       // last: its thread uses jobs_
 };
 
-/// core's estimator for this robot. The returned functions refer to `model` and `cell`.
-Estimator core_estimator(const VirtualCell& cell);
+/// core's estimator for this robot. The returned functions refer to `cell`.
+Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift);
 
 }  // namespace calibrd

@@ -12,19 +12,6 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
-constexpr auto kRateWindow = 2s;
-
-const char* name_of(SensorHealth::State state) {
-  switch (state) {
-    case SensorHealth::State::starting:
-      return "starting";
-    case SensorHealth::State::streaming:
-      return "streaming";
-    case SensorHealth::State::lost:
-      return "lost";
-  }
-  return "lost";
-}
 
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
@@ -33,11 +20,12 @@ double seconds_of(Clock::time_point time) {
 }  // namespace
 
 LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-                       std::function<void(const api::PoseReport&)> on_pose)
+                       std::function<void(const api::PoseReport&)> on_pose, std::unique_ptr<DriftWatch> watch)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
       on_pose_(std::move(on_pose)),
+      monitor_(watch ? std::make_unique<DriftMonitor>(std::move(watch)) : nullptr),
       gate_(settings_.gate),
       watch_(settings_.watch) {}
 
@@ -114,6 +102,7 @@ void LiveSensor::finish(FrameDecision decision) {
   }
   const bool usable = decision.verdict == FrameVerdict::usable;
   serve_tasks(*sighting, usable);
+  watch(*sighting);
   if (usable) check(*sighting);
 }
 
@@ -142,16 +131,36 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
   for (const auto& task : open_tasks()) task->start_over();
 }
 
+void LiveSensor::watch(const Sighting& sighting) {
+  if (!monitor_) return;
+  monitor_->add_frame(sighting.view);
+  const std::lock_guard lock(mutex_);  // a pose that is set now resets what the monitor says
+  if (sighting.stamp <= lost_at_) return;
+  const bool was_plausible = watch_.is_plausible();
+  if (monitor_->verdict() == DriftVerdict::sensor_moved) watch_.on_sensor_moved();
+  if (monitor_->is_in_place()) watch_.on_background_in_place(Clock::now());
+  if (was_plausible && !watch_.is_plausible())
+    evidence_.reset();  // it was found where the sensor stood before
+}
+
+bool LiveSensor::is_check_due(Clock::time_point now) const {
+  constexpr auto kAtMost = 100ms;
+  return watch_.is_check_due(now) || (monitor_ && monitor_->wants_check() && now - checked_at_ >= kAtMost);
+}
+
 void LiveSensor::check(const Sighting& sighting) {
   std::unique_lock lock(mutex_);
-  if (!known_ || sighting.stamp <= lost_at_ || !watch_.is_check_due(Clock::now())) return;
+  if (!known_ || sighting.stamp <= lost_at_ || !is_check_due(Clock::now())) return;
+  checked_at_ = Clock::now();
   const auto number = pose_number_;
   const auto pose = *known_->result.T_base_sensor;
-  const auto correction = known_->result.depth_correction;
+  auto correction = known_->result.depth_correction;
+  if (monitor_) correction.offset_m += monitor_->depth_offset_change_m();
   lock.unlock();
   const auto checked = check_(sighting.view, pose, correction);
   lock.lock();
   if (number != pose_number_) return;
+  if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
   watch_.on_check(checked, Clock::now());
   if (was_plausible && !watch_.is_plausible())
@@ -174,8 +183,9 @@ void LiveSensor::tell_of_pose() {
   if (on_pose_) on_pose_(pose());
 }
 
-void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin) {
+void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views) {
   const std::lock_guard lock(mutex_);
+  if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(views));
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;
@@ -214,69 +224,6 @@ void LiveSensor::feed(std::shared_ptr<CollectTask> task) {
 std::shared_ptr<const Sighting> LiveSensor::newest() const {
   const std::lock_guard lock(mutex_);
   return newest_;
-}
-
-api::PoseReport LiveSensor::pose() const {
-  const auto now = Clock::now();
-  const std::lock_guard lock(mutex_);
-  api::PoseReport report;
-  report.sensor_id = settings_.id;
-  report.base_frame = robot_.model().base_link();
-  report.sensor_frame = settings_.id + "_optical";
-  report.state = watch_.state();
-  report.valid = known_ && watch_.is_valid(now);
-  report.reason = watch_.reason(now);
-  report.known = known_;
-  report.last_check = watch_.last_check(now);
-  report.passed_check_age = watch_.passed_check_age(now);
-  report.max_unverified = settings_.watch.max_unverified;
-  return report;
-}
-
-api::SensorReport LiveSensor::report() const {
-  const auto now = Clock::now();
-  const std::lock_guard lock(mutex_);
-  SensorHealth health;
-  if (source_) health = source_->health();
-  api::SensorReport report;
-  report.id = settings_.id;
-  report.health = name_of(health.state);
-  report.reason = health.reason;
-  if (health.state == SensorHealth::State::starting && health.reason.empty())
-    report.reason = "the device is being opened; this can take some seconds";
-  report.device = health.device;
-  report.notice = health.notice;
-  report.frames = health.frames;
-  report.frames_lost = health.frames_lost;
-  report.restarts = health.restarts;
-  report.frame_rate_hz = frame_rate_hz(now);
-  if (!arrivals_.empty()) report.frame_age = now - arrivals_.back();
-  report.camera = settings_.camera;
-  report.has_image = newest_ && newest_->view.image;
-  report.views.usable = verdict_ == FrameVerdict::usable;
-  report.views.code = name_of(verdict_);
-  report.views.reason = reason_of(verdict_);
-  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)];
-  for (std::size_t i = 1; i < kFrameVerdicts; ++i)
-    if (counts_[i] > 0) report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
-  report.pose_state = watch_.state();
-  report.pose_valid = known_ && watch_.is_valid(now);
-  return report;
-}
-
-/// What became of the last frame says nothing of a sensor that sends none.
-std::string LiveSensor::hindrance() const {
-  const auto now = report();
-  if (now.health == name_of(SensorHealth::State::streaming)) return now.views.reason;
-  return "the sensor is " + now.health + (now.reason.empty() ? "" : ": " + now.reason);
-}
-
-double LiveSensor::frame_rate_hz(Clock::time_point now) const {
-  const auto first = std::find_if(arrivals_.begin(), arrivals_.end(),
-                                  [&](Clock::time_point arrival) { return now - arrival < kRateWindow; });
-  if (std::distance(first, arrivals_.end()) < 2) return 0;
-  const std::chrono::duration<double> span = arrivals_.back() - *first;
-  return span.count() > 0 ? static_cast<double>(std::distance(first, arrivals_.end()) - 1) / span.count() : 0;
 }
 
 }  // namespace calibrd

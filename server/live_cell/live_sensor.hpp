@@ -14,6 +14,7 @@
 #include "core/calibration/check_pose.hpp"
 #include "drivers/sensor/depth_source.hpp"
 #include "server/live_cell/collect_task.hpp"
+#include "server/live_cell/drift_monitor.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/pose_watch.hpp"
 #include "server/live_cell/view_gate.hpp"
@@ -57,9 +58,11 @@ struct Sighting {
 class LiveSensor {
  public:
   /// `robot` must outlive it.
+  /// `watch`: nothing, or what follows the pose frame by frame.
   /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
   LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-             std::function<void(const api::PoseReport&)> on_pose = {});
+             std::function<void(const api::PoseReport&)> on_pose = {},
+             std::unique_ptr<DriftWatch> watch = {});
   ~LiveSensor();
 
   void start(std::unique_ptr<DepthSource> source);
@@ -75,8 +78,9 @@ class LiveSensor {
 
   const std::string& basis() const { return settings_.basis; }
 
-  /// The pose being served. A stored one is unverified until a check agrees.
-  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin);
+  /// The pose being served. A stored one is unverified until a check agrees. `views`: those it was just found
+  /// from.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
@@ -93,6 +97,13 @@ class LiveSensor {
   std::shared_ptr<const Sighting> newest() const;
 
   api::PoseReport pose() const;
+  api::DriftReport drift() const;
+  /// Where a sensor that has moved is now, as far as its background tells.
+  std::optional<Pose> seen_pose() const;
+  /// See DriftMonitor.
+  std::shared_ptr<const BackgroundMap> background() const {
+    return monitor_ ? monitor_->background() : nullptr;
+  }
   api::SensorReport report() const;
   /// Why it gives no views now, and what to do; empty: it does.
   std::string hindrance() const;
@@ -105,6 +116,8 @@ class LiveSensor {
   void finish(FrameDecision decision);
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
+  void watch(const Sighting& sighting);
+  bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);
@@ -116,6 +129,8 @@ class LiveSensor {
   const CheckFunction check_;
   const std::function<void(const api::PoseReport&)> on_pose_;
   std::atomic<bool> is_stopping_{false};
+
+  const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
   ViewGate gate_;
@@ -131,6 +146,7 @@ class LiveSensor {
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
   std::optional<PoseEvidence> evidence_;
+  Clock::time_point checked_at_;
   Clock::time_point lost_at_;      // the last moment the source was away: frames before it prove nothing now
   std::uint64_t pose_number_ = 0;  // counts set_pose()
   struct Told {

@@ -6,6 +6,13 @@ namespace calibrd {
 
 using api::PoseState;
 
+namespace {
+
+/// The background's word holds for so long.
+constexpr auto kInPlace = std::chrono::seconds(1);
+
+}  // namespace
+
 void PoseWatch::set_fresh(Clock::time_point seen_at) {
   set_stored();
   state_ = PoseState::calibrated;
@@ -31,6 +38,18 @@ void PoseWatch::on_sensor_lost() {
   if (state_ != PoseState::calibrated) return;
   state_ = PoseState::unverified;
   doubt_ = Doubt::sensor_lost;
+}
+
+void PoseWatch::on_background_in_place(Clock::time_point now) {
+  in_place_at_ = now;
+  const bool returned = state_ == PoseState::unverified && doubt_ == Doubt::sensor_lost;
+  if (!objection_.empty() || (state_ != PoseState::calibrated && !returned)) return;
+  state_ = PoseState::calibrated;
+  passed_at_ = now;
+}
+
+void PoseWatch::on_sensor_moved() {
+  if (state_ != PoseState::uncalibrated) state_ = PoseState::drifted;
 }
 
 bool PoseWatch::is_check_due(Clock::time_point now) const {
@@ -59,8 +78,10 @@ void PoseWatch::disagree(Clock::time_point now) {
   if (disagreements_ == 0) disagrees_since_ = now;
   ++disagreements_;
   const bool lasts = now - disagrees_since_ >= settings_.least_drift;
-  state_ = lasts && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
-                                                                       : PoseState::unverified;
+  // Of a sensor that stands the robot's word is that joints, base or model are wrong.
+  const bool stands = in_place_at_ && now - *in_place_at_ < kInPlace;
+  state_ = lasts && !stands && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
+                                                                                  : PoseState::unverified;
   doubt_ = Doubt::disagreement;
 }
 
@@ -72,6 +93,10 @@ std::string PoseWatch::doubt() const {
              "the "
              "robot holds still in view";
     case Doubt::disagreement:
+      if (in_place_at_)
+        return "the sensor stands, but the robot is not where its joints and the pose put it: check joint "
+               "zeros, the "
+               "robot's base and the model; further checks follow at once";
       return "the last check disagreed with the pose; further checks follow at once";
     case Doubt::restored:
       break;

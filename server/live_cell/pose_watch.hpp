@@ -39,6 +39,12 @@ class PoseWatch {
   /// The sensor may have been moved while it was away: a valid pose is unverified until a check agrees.
   void on_sensor_lost();
 
+  /// The sensor sees the background where it was when the pose was found: that is a check, too, unless the
+  /// robot has disagreed. While it goes on a disagreeing robot is off, not the sensor.
+  void on_background_in_place(Clock::time_point now);
+  /// The background says that the sensor has moved.
+  void on_sensor_moved();
+
   bool is_check_due(Clock::time_point now) const;
   void on_check(const PoseCheck& check, Clock::time_point now);
 
@@ -65,6 +71,7 @@ class PoseWatch {
   std::string objection_;
   int disagreements_ = 0;  // in a row
   Clock::time_point disagrees_since_;
+  std::optional<Clock::time_point> in_place_at_;
   std::optional<Clock::time_point> checked_at_, passed_at_, evidence_at_;
   PoseCheck last_;
 };

@@ -26,6 +26,11 @@ class PostureCollector {
   /// The sensor may have been moved: what it has seen so far is dropped.
   void start_over();
 
+  /// The postures seen are enough, once there is one.
+  void settle_for_less() {
+    if (seen_ > 0) settings_.postures = seen_;
+  }
+
   bool is_complete() const { return seen() >= settings_.postures; }
   int seen() const { return seen_; }  ///< also once they are taken
   /// The last view offered was of a posture already seen.

@@ -14,6 +14,7 @@ class FakeCell : public CellService {
  public:
   PoseReport pose_report;
   RobotReport robot_report;
+  DriftReport drift_report;
   SensorReport sensor_report;
   Cloud cloud_report;
   std::function<Result<CalibrationReport>(const CalibrationRequest&)> on_start;
@@ -61,6 +62,7 @@ class FakeCell : public CellService {
   CellReport cell() const override { return {"0", Seconds(1), robot_report, {sensor_report}}; }
   std::vector<SensorReport> sensors() const override { return {sensor_report}; }
   Result<SensorReport> sensor(std::string_view id) const override { return of_sensor(id, sensor_report); }
+  Result<DriftReport> drift(std::string_view id) const override { return of_sensor(id, drift_report); }
   Result<PoseReport> pose(std::string_view id) const override {
     const std::lock_guard lock(mutex_);
     return of_sensor(id, pose_report);

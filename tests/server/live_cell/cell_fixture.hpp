@@ -68,6 +68,7 @@ class CellFixture : public ::testing::Test {
     ASSERT_TRUE(model) << model.error().message();
     model_ = std::make_unique<RobotModel>(*std::move(model));
     virtual_cell_ = std::make_unique<VirtualCell>(*model_);
+    settings_.healing.mode = HealingMode::off;
     settings_.urdf = folder_ / "robot.urdf";
     settings_.search_paths = {folder_ / "models"};
     start();

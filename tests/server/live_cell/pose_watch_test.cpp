@@ -140,5 +140,46 @@ TEST_F(Watch, WithheldPoseIsNotMadeValidByChecks) {
   EXPECT_TRUE(watch_.is_valid(at(11s)));
 }
 
+TEST_F(Watch, MovedSensorIsDriftedAtOnceAndStaysSo) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_sensor_moved();
+  EXPECT_EQ(watch_.state(), PoseState::drifted);
+  EXPECT_FALSE(watch_.is_valid(at(1ms)));
+  watch_.on_background_in_place(at(1s));
+  watch_.on_check(kAgrees, at(2s));
+  EXPECT_EQ(watch_.state(), PoseState::drifted);
+}
+
+TEST_F(Watch, BackgroundInPlaceKeepsAPoseValidThatNoRobotIsThereToCheck) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_background_in_place(at(50s));
+  EXPECT_TRUE(watch_.is_valid(at(100s)));
+  EXPECT_FALSE(watch_.is_valid(at(111s)));
+}
+
+TEST_F(Watch, BackgroundInPlaceMakesNoStoredPoseValid) {
+  watch_.set_stored();
+  watch_.on_background_in_place(at(1s));
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+}
+
+TEST_F(Watch, BackgroundInPlaceEndsTheDoubtAfterASensorWasLost) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_sensor_lost();
+  watch_.on_background_in_place(at(1s));
+  EXPECT_TRUE(watch_.is_valid(at(1s)));
+}
+
+TEST_F(Watch, RobotThatDisagreesWhileTheBackgroundStandsIsNoDriftButNoValidPose) {
+  watch_.set_fresh(at(0ms));
+  for (int i = 0; i <= 60; ++i) {
+    watch_.on_background_in_place(at(1s + i * 100ms));
+    watch_.on_check(kDisagrees, at(1s + i * 100ms));
+    EXPECT_FALSE(watch_.is_valid(at(1s + i * 100ms)));
+  }
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  EXPECT_NE(watch_.reason(at(8s)).find("joint zeros"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace calibrd

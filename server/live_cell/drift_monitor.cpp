@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/drift_monitor.hpp"
+
+#include <algorithm>
+
+#include "server/live_cell/posture_collector.hpp"
+
+namespace calibrd {
+namespace {
+
+constexpr std::size_t kSeries = 600, kEvents = 100;
+constexpr double kSamplePeriod_s = 1;
+/// Frames that passed a check, to learn a background from, a second apart: of two postures, for one shows
+/// nothing behind the robot; of one where the robot keeps standing.
+constexpr std::size_t kFramesToLearn = 3, kMostFramesToLearn = 10;
+constexpr double kBetweenFrames_s = 1, kOtherPosture_rad = 0.1;
+
+Clock::time_point time_of(double stamp_s) {
+  return Clock::time_point(
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(stamp_s)));
+}
+
+}  // namespace
+
+void DriftMonitor::set_pose(const Pose& T_base_sensor, std::vector<View> views) {
+  const std::lock_guard lock(mutex_);
+  order_ = Order{T_base_sensor, std::move(views)};
+  has_pose_ = true;
+  newest_ = {};
+  background_.reset();
+  in_place_ = wants_check_ = false;
+}
+
+void DriftMonitor::take_order() {
+  std::optional<Order> order;
+  {
+    const std::lock_guard lock(mutex_);
+    order.swap(order_);
+  }
+  if (!order) return;
+  passed_.clear();
+  watch_->set_pose(order->T_base_sensor);
+  if (!order->views.empty()) learn(order->views);
+}
+
+void DriftMonitor::add_frame(const View& frame) {
+  take_order();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!has_pose_) return;
+  }
+  const DriftReport& report = watch_->add_frame(frame);
+  const std::lock_guard lock(mutex_);
+  if (order_) return;  // a pose that came meanwhile: this was of the last one
+  note(report, frame.stamp_s);
+  in_place_ = watch_->is_in_place();
+  wants_check_ = watch_->wants_check();
+  stamp_ = time_of(frame.stamp_s);
+}
+
+void DriftMonitor::note(const DriftReport& report, double now_s) {
+  if (report.verdict != newest_.verdict || events_.empty()) {
+    events_.push_back({time_of(now_s), name_of(report.verdict)});
+    if (events_.size() > kEvents) events_.pop_front();
+  }
+  const auto at = time_of(now_s);
+  if (series_.empty() || at - series_.back().stamp >= std::chrono::duration<double>(kSamplePeriod_s)) {
+    series_.push_back({at, 0, 0, 0, 0});
+    if (series_.size() > kSeries) series_.pop_front();
+  }
+  api::DriftSample& sample = series_.back();
+  sample.statistic = std::max(sample.statistic, report.statistic);
+  sample.shift_m = report.shift_m;
+  sample.turn_rad = report.turn_rad;
+  sample.depth_offset_change_m = report.depth_offset_change_m;
+  newest_ = report;
+}
+
+void DriftMonitor::add_check(const View& frame, const PoseCheck& check) {
+  watch_->add_check(check, frame.stamp_s);
+  if (check.enough_evidence && !check.agrees) passed_.clear();
+  if (check.agrees && !watch_->has_background()) keep_for_background(frame);
+}
+
+void DriftMonitor::keep_for_background(const View& frame) {
+  if (!passed_.empty() && frame.stamp_s - passed_.back().stamp_s < kBetweenFrames_s) return;
+  passed_.push_back(frame);
+  const bool several = std::ranges::any_of(passed_, [&](const View& other) {
+    return posture_distance(other.joint_positions_rad, frame.joint_positions_rad) > kOtherPosture_rad;
+  });
+  if (passed_.size() < (several ? kFramesToLearn : kMostFramesToLearn)) return;
+  learn(passed_);
+  passed_.clear();
+}
+
+void DriftMonitor::learn(std::span<const View> views) {
+  watch_->learn(views);
+  if (!watch_->has_background()) return;
+  auto learnt = std::make_shared<const BackgroundMap>(watch_->background());
+  const std::lock_guard lock(mutex_);
+  if (!order_) background_ = std::move(learnt);
+}
+
+std::shared_ptr<const BackgroundMap> DriftMonitor::background() const {
+  const std::lock_guard lock(mutex_);
+  return background_;
+}
+
+DriftVerdict DriftMonitor::verdict() const {
+  const std::lock_guard lock(mutex_);
+  return newest_.verdict;
+}
+
+bool DriftMonitor::is_in_place() const {
+  const std::lock_guard lock(mutex_);
+  return in_place_;
+}
+
+bool DriftMonitor::wants_check() const {
+  const std::lock_guard lock(mutex_);
+  return wants_check_;
+}
+
+double DriftMonitor::depth_offset_change_m() const {
+  const std::lock_guard lock(mutex_);
+  return newest_.depth_offset_change_m;
+}
+
+std::optional<Pose> DriftMonitor::T_base_sensor_seen() const {
+  const std::lock_guard lock(mutex_);
+  return newest_.T_base_sensor_seen;
+}
+
+api::DriftReport DriftMonitor::report() const {
+  const auto now = Clock::now();
+  const std::lock_guard lock(mutex_);
+  api::DriftReport report;
+  report.watched = has_pose_;
+  report.now = newest_;
+  if (has_pose_ && stamp_ != Clock::time_point()) report.age = now - stamp_;
+  report.series.assign(series_.begin(), series_.end());
+  report.events.assign(events_.begin(), events_.end());
+  return report;
+}
+
+}  // namespace calibrd

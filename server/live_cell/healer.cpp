@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/healer.hpp"
+
+#include <algorithm>
+
+namespace calibrd {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kBusyRetry = 500ms;  // another calibration of the sensor is under way
+constexpr auto kLongWait = 1h;
+constexpr int kEagerAttempts = 2;  // the quick one and the full one follow each other at once
+
+}  // namespace
+
+const char* name_of(HealingMode mode) {
+  switch (mode) {
+    case HealingMode::automatic:
+      return "automatic";
+    case HealingMode::ask:
+      return "ask";
+    case HealingMode::off:
+      break;
+  }
+  return "off";
+}
+
+Healer::Healer(const HealerSettings& settings, Start start)
+    : settings_(settings), start_(std::move(start)), thread_([this] { run(); }) {}
+
+Healer::~Healer() {
+  request_stop();
+  thread_.join();
+}
+
+void Healer::request_stop() {
+  const std::lock_guard lock(mutex_);
+  is_stopping_ = true;
+  changed_.notify_all();
+}
+
+void Healer::on_pose(const api::PoseReport& pose) {
+  if (settings_.mode == HealingMode::off) return;
+  const std::lock_guard lock(mutex_);
+  Patient& patient = patients_[pose.sensor_id];
+  const bool drifted = pose.state == api::PoseState::drifted;
+  if (drifted == patient.drifted) return;
+  patient.drifted = drifted;
+  patient.candidate.clear();
+  if (!drifted) return;
+  const auto now = Clock::now();
+  if (now - patient.last_attempt > settings_.calm_after) patient.attempts = 0;
+  // One that was healed a moment ago and is off again waits as after a failure: no flapping.
+  patient.due =
+      patient.attempts < kEagerAttempts ? now : patient.last_attempt + pause_after(patient.attempts);
+  changed_.notify_all();
+}
+
+void Healer::on_calibration(const api::CalibrationReport& calibration) {
+  const std::lock_guard lock(mutex_);
+  const auto found = patients_.find(calibration.sensor_id);
+  if (found == patients_.end() || found->second.calibration != calibration.id || !calibration.finished)
+    return;
+  Patient& patient = found->second;
+  patient.calibration.clear();
+  if (calibration.status == api::JobStatus::succeeded && !calibration.activate)
+    patient.candidate = calibration.id;
+  const bool eager = patient.attempts < kEagerAttempts && calibration.status == api::JobStatus::failed;
+  patient.due = Clock::now() + (eager ? Clock::duration(0) : pause_after(patient.attempts));
+  changed_.notify_all();
+}
+
+Clock::duration Healer::pause_after(int attempts) const {
+  auto pause = settings_.cooldown;
+  for (int i = kEagerAttempts; i < attempts && pause < settings_.longest_cooldown; ++i) pause *= 2;
+  return std::min(pause, settings_.longest_cooldown);
+}
+
+std::string Healer::candidate(const std::string& sensor_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = patients_.find(sensor_id);
+  return found == patients_.end() ? std::string() : found->second.candidate;
+}
+
+void Healer::run() {
+  std::unique_lock lock(mutex_);
+  while (!is_stopping_) {
+    auto wake = Clock::now() + kLongWait;
+    std::string next;
+    for (const auto& [id, patient] : patients_) {
+      if (!patient.drifted || !patient.calibration.empty() || !patient.candidate.empty()) continue;
+      if (patient.due <= Clock::now()) next = id;
+      wake = std::min(wake, patient.due);
+    }
+    if (next.empty())
+      changed_.wait_until(lock, wake);
+    else
+      attempt(next, lock);
+  }
+}
+
+void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock) {
+  api::CalibrationRequest request;
+  request.sensor_id = sensor_id;
+  request.activate = settings_.mode == HealingMode::automatic;
+  request.after_move = true;
+  if (patients_[sensor_id].attempts == 0) {
+    request.postures = settings_.postures;
+    request.patience = settings_.patience;
+  }
+  lock.unlock();
+  const auto started = start_(request);
+  lock.lock();
+  Patient& patient = patients_[sensor_id];
+  if (!started) {
+    patient.due = Clock::now() + kBusyRetry;
+    return;
+  }
+  patient.calibration = started->id;
+  patient.last_attempt = Clock::now();
+  ++patient.attempts;
+}
+
+}  // namespace calibrd

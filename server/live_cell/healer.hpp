@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "api/service/reports.hpp"
+#include "core/base/result.hpp"
+#include "core/sensing/images.hpp"
+
+namespace calibrd {
+
+/// What is done when a sensor has moved.
+enum class HealingMode { automatic, ask, off };
+const char* name_of(HealingMode mode);
+
+struct HealerSettings {
+  HealingMode mode = HealingMode::automatic;
+  int postures = 3;                                     ///< of the first, quick attempt, at most
+  api::Seconds patience{1.5};                           ///< how long it collects once it has one posture
+  Clock::duration cooldown = std::chrono::seconds(10);  ///< after a failed attempt; doubles up to ...
+  Clock::duration longest_cooldown = std::chrono::minutes(10);
+  Clock::duration calm_after = std::chrono::minutes(10);  ///< ... and starts anew after so long without one
+};
+
+/// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, with all
+/// the postures a calibration asks for, then again after pauses that grow. A sensor that is knocked again and
+/// again is not calibrated without end. Safe to call from any thread.
+class Healer {
+ public:
+  /// Starts a calibration of a sensor; may fail, because one is under way or the cell is stopping.
+  using Start = std::function<Result<api::CalibrationReport>(const api::CalibrationRequest&)>;
+
+  Healer(const HealerSettings& settings, Start start);
+  ~Healer();
+
+  void on_pose(const api::PoseReport& pose);
+  /// Of every calibration that has ended.
+  void on_calibration(const api::CalibrationReport& calibration);
+
+  HealingMode mode() const { return settings_.mode; }
+  /// Id of a calibration of the sensor that waits to be activated; empty: none.
+  std::string candidate(const std::string& sensor_id) const;
+
+  void request_stop();
+
+ private:
+  struct Patient {
+    bool drifted = false;
+    std::string calibration;  // under way; empty: none
+    std::string candidate;
+    int attempts = 0;
+    Clock::time_point last_attempt, due;
+  };
+  void run();
+  void attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
+  Clock::duration pause_after(int attempts) const;
+
+  const HealerSettings settings_;
+  const Start start_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::map<std::string, Patient> patients_;
+  bool is_stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace calibrd

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/healer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "api/problem/api_error.hpp"
+
+namespace calibrd {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A healer whose calibrations are started by hand-written numbers.
+class Healing : public ::testing::Test {
+ protected:
+  void begin(HealingMode mode, Clock::duration cooldown = 10min) {
+    HealerSettings settings;
+    settings.mode = mode;
+    settings.postures = 2;
+    settings.cooldown = cooldown;
+    healer_ = std::make_unique<Healer>(settings, [this](const auto& request) { return start(request); });
+  }
+  Result<api::CalibrationReport> start(const api::CalibrationRequest& request) {
+    const std::lock_guard lock(mutex_);
+    if (busy_ > 0) {
+      --busy_;
+      return fail(api::ApiError::calibration_in_progress, "c0");
+    }
+    requests_.push_back(request);
+    changed_.notify_all();
+    api::CalibrationReport report;
+    report.id = "c" + std::to_string(requests_.size());
+    return report;
+  }
+  bool wait_for(std::size_t requests, Clock::duration patience = 20s) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, patience, [&] { return requests_.size() >= requests; });
+  }
+  void set_state(api::PoseState state) {
+    api::PoseReport pose;
+    pose.sensor_id = "eye";
+    pose.state = state;
+    healer_->on_pose(pose);
+  }
+  void end(const std::string& id, api::JobStatus status, bool activate = true) {
+    api::CalibrationReport report;
+    report.id = id;
+    report.sensor_id = "eye";
+    report.status = status;
+    report.activate = activate;
+    report.finished = std::chrono::system_clock::now();
+    healer_->on_calibration(report);
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<api::CalibrationRequest> requests_;
+  int busy_ = 0;
+  std::unique_ptr<Healer> healer_;  // last: its thread uses the others
+};
+
+TEST_F(Healing, MovedSensorIsCalibratedAtOnceFromWhatIsAtHand) {
+  begin(HealingMode::automatic);
+  set_state(api::PoseState::calibrated);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  EXPECT_EQ(requests_[0].sensor_id, "eye");
+  EXPECT_EQ(requests_[0].postures, 2);
+  EXPECT_TRUE(requests_[0].patience && requests_[0].after_move && requests_[0].activate);
+}
+
+TEST_F(Healing, FailedQuickAttemptIsFollowedByAFullOneAndThenByAPause) {
+  begin(HealingMode::automatic);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::failed);
+  ASSERT_TRUE(wait_for(2));
+  EXPECT_FALSE(requests_[1].patience || requests_[1].postures);
+  end("c2", api::JobStatus::failed);
+  EXPECT_FALSE(wait_for(3, 300ms));
+}
+
+TEST_F(Healing, SensorThatIsKnockedAgainAndAgainIsNotCalibratedWithoutEnd) {
+  begin(HealingMode::automatic);
+  for (int knock = 1; knock <= 2; ++knock) {
+    set_state(api::PoseState::drifted);
+    ASSERT_TRUE(wait_for(static_cast<std::size_t>(knock)));
+    end("c" + std::to_string(knock), api::JobStatus::succeeded);
+    set_state(api::PoseState::calibrated);
+  }
+  set_state(api::PoseState::drifted);
+  EXPECT_FALSE(wait_for(3, 300ms));
+}
+
+TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {
+  begin(HealingMode::ask);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  EXPECT_FALSE(requests_[0].activate);
+  end("c1", api::JobStatus::succeeded, false);
+  EXPECT_EQ(healer_->candidate("eye"), "c1");
+  EXPECT_FALSE(wait_for(2, 200ms));
+  set_state(api::PoseState::calibrated);
+  EXPECT_EQ(healer_->candidate("eye"), "");
+}
+
+TEST_F(Healing, OffDoesNothing) {
+  begin(HealingMode::off);
+  set_state(api::PoseState::drifted);
+  EXPECT_FALSE(wait_for(1, 200ms));
+}
+
+TEST_F(Healing, CalibrationUnderWayIsWaitedFor) {
+  begin(HealingMode::automatic);
+  busy_ = 1;
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+}
+
+TEST_F(Healing, PoseThatIsGoodAgainEndsTheAttempts) {
+  begin(HealingMode::automatic, 200ms);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::failed);
+  ASSERT_TRUE(wait_for(2));
+  end("c2", api::JobStatus::failed);
+  set_state(api::PoseState::calibrated);
+  EXPECT_FALSE(wait_for(3, 500ms));
+}
+
+}  // namespace
+}  // namespace calibrd
