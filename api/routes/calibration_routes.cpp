@@ -78,7 +78,8 @@ Result<CalibrationRequest> read_calibration_request(const Request& request, cons
 
 Response answer_start(const Request& request, const PathValues& values, CellService& service) {
   if (auto unknown = unknown_query(request, {})) return problem(*unknown);
-  const auto wanted = read_calibration_request(request, values[0], {"method", "guess", "postures", "activate"});
+  const auto wanted =
+      read_calibration_request(request, values[0], {"method", "guess", "postures", "activate"});
   if (!wanted) return problem(wanted.error());
   const auto started = service.start_calibration(*wanted);
   if (!started) return problem(started.error());
@@ -123,8 +124,8 @@ Response answer_start_all(const Request& request, CellService& service) {
     refused.push_back({{"sensor", id},
                        {"code", problem_entry(static_cast<ApiError>(error.code.value())).code},
                        {"reason", error.message()}});
-  auto response = json_response(
-      202, json::object{{"calibrations", std::move(started)}, {"refused", std::move(refused)}});
+  auto response =
+      json_response(202, json::object{{"calibrations", std::move(started)}, {"refused", std::move(refused)}});
   response.headers.emplace_back("Retry-After", "1");
   return response;
 }
@@ -180,10 +181,9 @@ void add_calibration_routes(Router& router, CellService& service) {
              [&service](const Request& request, const PathValues& values) {
                return answer_history(request, values, service);
              });
-  router.add("POST", "/api/v1/cell/calibrations", Cost::slow,
-             [&service](const Request& request, const PathValues&) {
-               return answer_start_all(request, service);
-             });
+  router.add(
+      "POST", "/api/v1/cell/calibrations", Cost::slow,
+      [&service](const Request& request, const PathValues&) { return answer_start_all(request, service); });
   const auto add_one = [&router](const char* method, const char* path, CalibrationCall call) {
     router.add(method, path, Cost::slow,
                [call = std::move(call)](const Request& request, const PathValues& values) {

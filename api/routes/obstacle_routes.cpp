@@ -30,13 +30,13 @@ json::value robot_distance_json(const Obstacle& obstacle, const std::vector<std:
 }
 
 json::object obstacle_json(const Obstacle& obstacle, const std::vector<std::string>& links) {
-  return {{"centre_m", point_json(obstacle.centre_base)},
-          {"box_m",
-           {{"min", point_json(obstacle.box_base.min())}, {"max", point_json(obstacle.box_base.max())}}},
-          {"points", obstacle.points},
-          {"before_known_share", obstacle.before_known_share},
-          {"near_tool", obstacle.near_tool},
-          {"robot", robot_distance_json(obstacle, links)}};
+  return {
+      {"centre_m", point_json(obstacle.centre_base)},
+      {"box_m", {{"min", point_json(obstacle.box_base.min())}, {"max", point_json(obstacle.box_base.max())}}},
+      {"points", obstacle.points},
+      {"before_known_share", obstacle.before_known_share},
+      {"near_tool", obstacle.near_tool},
+      {"robot", robot_distance_json(obstacle, links)}};
 }
 
 json::object sensor_obstacles_json(const SensorObstacles& sensor, const std::vector<std::string>& links) {
@@ -81,9 +81,9 @@ Response answer_obstacles(const Request& request, CellService& service) {
 }  // namespace
 
 void add_obstacle_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/cell/obstacles", Cost::slow, [&service](const Request& request, const PathValues&) {
-    return answer_obstacles(request, service);
-  });
+  router.add(
+      "GET", "/api/v1/cell/obstacles", Cost::slow,
+      [&service](const Request& request, const PathValues&) { return answer_obstacles(request, service); });
 }
 
 }  // namespace calibrd::api

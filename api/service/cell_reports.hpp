@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "api/service/reports.hpp"
+#include "core/cross_check/cross_check.hpp"
 #include "core/obstacles/find_obstacles.hpp"
 
 namespace calibrd::api {
@@ -43,9 +44,16 @@ struct MergedCloud {
     std::string sensor_id, code, reason;
   };
   std::string base_frame;
-  std::vector<Part> parts;            ///< a point's sensor is an index into them
-  std::vector<LeftOut> left_out;      ///< sensors without a valid pose, frame or joints
+  std::vector<Part> parts;              ///< a point's sensor is an index into them
+  std::vector<LeftOut> left_out;        ///< sensors without a valid pose, frame or joints
   std::vector<Eigen::Vector3f> points;  ///< m, part by part
+};
+
+/// Whether two sensors see the cell at the same place.
+struct SensorPair {
+  std::string first_id, second_id;
+  bool compared = false;  ///< both have a valid pose and know their background
+  CrossCheck check;       ///< of the second against the first
 };
 
 /// Calibrations of several sensors from one motion of the robot.

@@ -47,6 +47,8 @@ class CellService {
 
   /// What is neither robot nor remembered background. `sensor_id` empty: for all sensors.
   virtual Result<ObstaclesReport> obstacles(const std::string& sensor_id) const = 0;
+  /// Every pair of sensors, compared by what both see of the cell.
+  virtual std::vector<SensorPair> cross_checks() const = 0;
   virtual Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const = 0;
   /// Starts a calibration of each sensor, so that one motion of the robot serves all. The error of the first
   /// when none could be started.

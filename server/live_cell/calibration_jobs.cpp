@@ -30,12 +30,13 @@ std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::
 }  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
-                                 Log log, JobSettings settings)
+                                 Log log, JobSettings settings, Review review)
     : store_(store),
       calibrate_(std::move(calibrate)),
       publish_(std::move(publish)),
       log_(std::move(log)),
       settings_(settings),
+      review_(std::move(review)),
       thread_([this] { run(); }) {}
 
 CalibrationJobs::~CalibrationJobs() {

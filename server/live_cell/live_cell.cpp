@@ -31,7 +31,8 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
             if (log_.on_calibration) log_.on_calibration(calibration);
             healer_.on_calibration(calibration);
           },
-          settings_.jobs),
+          settings_.jobs,
+          [this](auto& sensor, auto views, auto& result) { compare_with_others(sensor, views, result); }),
       healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
 
 LiveCell::~LiveCell() {

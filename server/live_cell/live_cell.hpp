@@ -16,6 +16,7 @@
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
 #include "server/live_cell/obstacle_watch.hpp"
+#include "server/live_cell/sensor_comparison.hpp"
 #include "server/storage/calibration_store.hpp"
 
 namespace calibrd {
@@ -91,6 +92,7 @@ class LiveCell : public api::CellService {
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
   Result<api::ObstaclesReport> obstacles(const std::string& sensor_id) const override;
+  std::vector<api::SensorPair> cross_checks() const override;
   Result<api::MergedCloud> merged_cloud(const api::MergedCloudRequest& request) const override;
   Result<api::CellCalibrations> start_calibrations(const api::CellCalibrationRequest& request) override;
 
@@ -109,6 +111,7 @@ class LiveCell : public api::CellService {
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
+  void compare_with_others(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -124,6 +127,7 @@ class LiveCell : public api::CellService {
   mutable CloudMaker clouds_;
   mutable CloudMerger cloud_merger_;
   mutable ObstacleWatch obstacle_watch_;
+  const SensorComparison comparison_{virtual_cell_};
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   CalibrationJobs jobs_;                                                // its thread uses the others
   Healer healer_;                                                       // last: its thread uses jobs_

@@ -24,6 +24,25 @@ Result<api::MergedCloud> LiveCell::merged_cloud(const api::MergedCloudRequest& r
   return cloud_merger_.merge(sensors, request);
 }
 
+std::vector<api::SensorPair> LiveCell::cross_checks() const {
+  std::vector<const LiveSensor*> sensors;
+  for (const auto& [id, entry] : entries_) sensors.push_back(entry->sensor.get());
+  return comparison_.pairs(sensors);
+}
+
+/// A pose that a better one contradicts is served no longer, and does not come back with a restart.
+void LiveCell::compare_with_others(LiveSensor& sensor, std::span<const View> views,
+                                   CalibrationResult& result) {
+  std::vector<LiveSensor*> others;
+  for (const auto& [id, entry] : entries_)
+    if (entry->sensor.get() != &sensor) others.push_back(entry->sensor.get());
+  comparison_.review(sensor, views, others, result, [this](LiveSensor& weaker, const std::string& reason) {
+    const auto pose = weaker.pose();
+    weaker.withhold(reason);
+    if (pose.known) store_drift(pose);
+  });
+}
+
 Result<api::CellCalibrations> LiveCell::start_calibrations(const api::CellCalibrationRequest& request) {
   auto ids = request.sensor_ids;
   for (const auto& id : ids)
@@ -39,7 +58,8 @@ Result<api::CellCalibrations> LiveCell::start_calibrations(const api::CellCalibr
     else
       calibrations.refused.push_back({id, started.error()});
   }
-  if (calibrations.started.empty() && !calibrations.refused.empty()) return calibrations.refused.front().error;
+  if (calibrations.started.empty() && !calibrations.refused.empty())
+    return calibrations.refused.front().error;
   return calibrations;
 }
 

@@ -82,6 +82,10 @@ class LiveSensor {
   /// from.
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
 
+  /// Something else speaks against the pose being served: until another one takes over it is not valid,
+  /// whatever its checks say.
+  void withhold(const std::string& objection);
+
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
 

@@ -12,8 +12,8 @@ struct SoundSighting {
   api::PoseReport::Known known;  ///< with T_base_sensor
 };
 
-/// Errors: ApiError::pose_not_valid, no_frame; joints_stale where `needs_joints` and those of the frame's time
-/// are not known.
+/// Errors: ApiError::pose_not_valid, no_frame; joints_stale where `needs_joints` and those of the frame's
+/// time are not known.
 Result<SoundSighting> sound_sighting(const LiveSensor& sensor, bool needs_joints);
 
 }  // namespace calibrd

@@ -99,6 +99,8 @@ class FakeCell : public CellService {
   Result<ObstaclesReport> obstacles(const std::string& sensor_id) const override {
     return sensor_id.empty() ? obstacles_report : of_sensor(sensor_id, obstacles_report);
   }
+  std::vector<SensorPair> pairs_report;
+  std::vector<SensorPair> cross_checks() const override { return pairs_report; }
   Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const override {
     last_merged = request;
     if (merged_report.parts.empty()) return fail(ApiError::pose_not_valid);

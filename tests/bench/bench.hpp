@@ -111,4 +111,11 @@ struct WatchOptions {
 };
 int run_watch(const WatchOptions& options);
 
+struct PairsOptions {
+  Paths urdfs, models;  ///< the scenes take the robots in turn
+  std::uint64_t first_seed = 1, scenes = 20;
+  std::size_t postures = 6;
+};
+int run_pairs(const PairsOptions& options);
+
 }  // namespace calibrd::bench

@@ -101,6 +101,18 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
   return command;
 }
 
+CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
+  CLI::App* command =
+      app.add_subcommand("pairs", "calibrate two sensors of random scenes, check them against each other");
+  command->add_option("--robot", pairs.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", pairs.models, "folders to look robot models up in");
+  command->add_option("--first-seed", pairs.first_seed);
+  command->add_option("--scenes", pairs.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", pairs.postures)->check(CLI::Range(2, 1000));
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -114,18 +126,21 @@ int main(int argc, char** argv) {
   RegisterOptions clouds;
   TrackOptions track;
   WatchOptions watch;
+  PairsOptions pairs;
   const CLI::App* fine_command = add_fine(app, fine);
   const CLI::App* global_command = add_global(app, global);
   add_render(app, render);
   const CLI::App* scenes_command = add_scenes(app, scenes);
   const CLI::App* register_command = add_register(app, clouds);
   const CLI::App* watch_command = add_watch(app, watch);
+  const CLI::App* pairs_command = add_pairs(app, pairs);
   const CLI::App* track_command = add_track(app, track);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (pairs_command->parsed()) return run_pairs(pairs);
   if (register_command->parsed()) return run_register(clouds);
   if (watch_command->parsed()) return run_watch(watch);
   if (track_command->parsed()) return run_track(track);

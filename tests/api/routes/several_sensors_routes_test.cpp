@@ -100,13 +100,30 @@ TEST_F(SeveralSensorsRoutes, MergedCloudCarriesTheSensorOfEachPointAndTheStampsO
   EXPECT_EQ(get("/api/v1/cell/cloud?robot=perhaps").status, 400);
 }
 
+TEST_F(SeveralSensorsRoutes, CrossChecksTellAgreementInSigmasAndWhatCouldNotBeCompared) {
+  SensorPair agreeing{"left", "right", true, {}}, apart{"left", "top", true, {}};
+  agreeing.check.has_overlap = apart.check.has_overlap = true;
+  agreeing.check.sigmas = 0.8;
+  apart.check.sigmas = std::numeric_limits<double>::infinity();
+  cell_.pairs_report = {agreeing, apart, {"right", "top", false, {}}};
+  EXPECT_EQ(get("/api/v1/cell/cross-checks").status, 200);
+  const boost::json::value pairs = body().at("pairs");
+  EXPECT_EQ(pairs.at(0).at("agree"), true);
+  EXPECT_EQ(pairs.at(0).at("sigmas"), 0.8);
+  EXPECT_EQ(pairs.at(1).at("agree"), false);
+  EXPECT_TRUE(pairs.at(1).at("sigmas").is_null());
+  EXPECT_EQ(pairs.at(2).at("compared"), false);
+  EXPECT_FALSE(pairs.at(2).as_object().contains("agree"));
+}
+
 TEST_F(SeveralSensorsRoutes, OneCallStartsTheCalibrationsOfAllAndSaysWhichWereRefused) {
   cell_.refused_starts = {{"other", fail(ApiError::calibration_in_progress, "c7")}};
   EXPECT_EQ(ask("POST", "/api/v1/cell/calibrations").status, 202);
   EXPECT_TRUE(cell_.last_start_all.sensor_ids.empty());
   EXPECT_EQ(body().at("calibrations").at(0).at("location"), "/api/v1/calibrations/c1");
   EXPECT_EQ(body().at("refused").at(0).at("code"), "calibration_in_progress");
-  EXPECT_EQ(ask("POST", "/api/v1/cell/calibrations", R"({"sensors": ["a", "b"], "postures": 6})").status, 202);
+  EXPECT_EQ(ask("POST", "/api/v1/cell/calibrations", R"({"sensors": ["a", "b"], "postures": 6})").status,
+            202);
   EXPECT_EQ(cell_.last_start_all.sensor_ids, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(cell_.last_start_all.each.postures, 6);
   for (const auto* bad : {R"({"sensors": []})", R"({"sensors": ["a", "a"]})", R"({"sensors": "a"})"})
