@@ -12,6 +12,8 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
+/// A sensor that has moved is seen from frame to frame within this, once it rests.
+constexpr double kRest_m = 0.005, kRest_rad = 0.004;
 
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
@@ -134,6 +136,7 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
 void LiveSensor::watch(const Sighting& sighting) {
   if (!monitor_) return;
   monitor_->add_frame(sighting.view);
+  notice_move();
   const std::lock_guard lock(mutex_);  // a pose that is set now resets what the monitor says
   if (sighting.stamp <= lost_at_) return;
   const bool was_plausible = watch_.is_plausible();
@@ -141,6 +144,18 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (monitor_->is_in_place()) watch_.on_background_in_place(Clock::now());
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
+}
+
+/// Views of before and after a move never come together, also while the sensor goes on moving.
+void LiveSensor::notice_move() {
+  const auto seen = monitor_->T_base_sensor_seen();
+  if (!seen) return resting_at_.reset();
+  if (resting_at_) {
+    const Vector6d since = difference(*resting_at_, *seen);
+    if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
+  }
+  resting_at_ = seen;
+  for (const auto& task : open_tasks()) task->start_over();
 }
 
 bool LiveSensor::is_check_due(Clock::time_point now) const {

@@ -121,6 +121,7 @@ class LiveSensor {
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void watch(const Sighting& sighting);
+  void notice_move();
   bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
@@ -137,6 +138,7 @@ class LiveSensor {
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
+  std::optional<Pose> resting_at_;  // where a sensor that has moved was seen first, or last come to rest
   ViewGate gate_;
   std::unique_ptr<Sighting> pending_;  // entered, its joints not all there
   std::uint64_t restarts_ = 0;         // of the source, as far as noticed

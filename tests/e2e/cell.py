@@ -129,10 +129,10 @@ class Daemon(Program):
     """calibrd with the demo's configuration; `settings` are section.key=value."""
 
     def __init__(self, folder: Path, controller_port: int, world_file: Path, *settings: str,
-                 config: Path = SOURCE / "config/demo.toml"):
+                 config: Path = SOURCE / "config/demo.toml", of_demo: bool = True):
         self.port = free_port()
         own = (f"server.port={self.port}", f"robot.port={controller_port}", f"storage.path={folder / 'calibrd.db'}",
-               *OF_THIS_BUILD)
+               *(OF_THIS_BUILD if of_demo else OF_THIS_BUILD[:1]))
         options = [word for setting in (*own, *settings) for word in ("--set", setting)]
         super().__init__("calibrd", folder, "serve", "--config", config, *options,
                          env={"CALIBRD_SIM_WORLD": str(world_file)})

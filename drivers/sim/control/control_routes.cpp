@@ -167,14 +167,14 @@ ControlRoutes::Answer ControlRoutes::set_errors(SensorState& sensor, Fields& fie
 }
 
 ControlRoutes::Answer ControlRoutes::set_mode(SensorState& sensor, Fields& fields) const {
-  constexpr const char* kModes[] = {"normal", "silent", "hanging", "unplugged"};
   int mode = -1;
-  fields.choice("mode", {kModes[0], kModes[1], kModes[2], kModes[3]}, mode);
-  if (mode < 0) fields.fail("mode", "one of \"normal\" \"silent\" \"hanging\" \"unplugged\"");
+  fields.choice("mode", {kSensorModes[0], kSensorModes[1], kSensorModes[2], kSensorModes[3], kSensorModes[4]},
+                mode);
+  if (mode < 0) fields.fail("mode", "one of \"normal\" \"silent\" \"hanging\" \"unplugged\" \"replay\"");
   const auto next = static_cast<SensorMode>(mode);
   if (sensor.mode == SensorMode::unplugged && next == SensorMode::normal) sensor.powered_ns = monotonic_ns();
   sensor.mode = next;
-  return json::object{{"mode", mode < 0 ? "" : kModes[mode]}};
+  return json::object{{"mode", mode < 0 ? "" : kSensorModes[mode]}};
 }
 
 ControlRoutes::Answer ControlRoutes::set_motion(Fields& fields) {
