@@ -81,8 +81,10 @@ class RobotMask {
   /// `positions`: of the frame's moment, position_names() order. 1 = robot, or so near its outline that it
   /// may be.
   const std::vector<std::uint8_t>& at(std::span<const double> positions, const Pose& T_base_sensor);
-  /// The robot at the joints of the last at().
+  /// The robot at the joints of the last at() ...
   const VirtualCell& cell() const { return cell_; }
+  /// ... and what of it the cells see.
+  const VirtualMeasurement& prediction() const { return prediction_; }
 
  private:
   VirtualCell cell_;

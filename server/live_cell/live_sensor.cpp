@@ -247,6 +247,13 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
 }
 
+void LiveSensor::withhold(const std::string& objection) {
+  const std::lock_guard lock(mutex_);
+  if (!known_) return;
+  watch_.set_withheld(objection);
+  evidence_.reset();
+}
+
 std::optional<Pose> LiveSensor::plausible_pose() const {
   const std::lock_guard lock(mutex_);
   return known_ && watch_.is_plausible() ? known_->result.T_base_sensor : std::nullopt;

@@ -155,5 +155,11 @@ struct WatchCreepOptions {
   double seen_s = 1;       ///< of every minute
 };
 int run_watch_creep(const WatchCreepOptions& options);
+struct PairsOptions {
+  Paths urdfs, models;  ///< the scenes take the robots in turn
+  std::uint64_t first_seed = 1, scenes = 20;
+  std::size_t postures = 6;
+};
+int run_pairs(const PairsOptions& options);
 
 }  // namespace calibrd::bench

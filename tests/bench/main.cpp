@@ -164,6 +164,18 @@ CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
   return command;
 }
 
+CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
+  CLI::App* command =
+      app.add_subcommand("pairs", "calibrate two sensors of random scenes, check them against each other");
+  command->add_option("--robot", pairs.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", pairs.models, "folders to look robot models up in");
+  command->add_option("--first-seed", pairs.first_seed);
+  command->add_option("--scenes", pairs.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", pairs.postures)->check(CLI::Range(2, 1000));
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -177,6 +189,7 @@ int main(int argc, char** argv) {
   RegisterOptions clouds;
   TrackOptions track;
   WatchOptions watch;
+  PairsOptions pairs;
   const CLI::App* fine_command = add_fine(app, fine);
   const CLI::App* global_command = add_global(app, global);
   add_render(app, render);
@@ -189,6 +202,7 @@ int main(int argc, char** argv) {
   const CLI::App* watch_tail_command = add_watch_tail(app, watch_tail);
   const CLI::App* watch_creep_command = add_watch_creep(app, watch_creep);
   const CLI::App* watch_hours_command = add_watch_hours(app, watch_hours);
+  const CLI::App* pairs_command = add_pairs(app, pairs);
   const CLI::App* track_command = add_track(app, track);
   StepOptions step;
   MovingBenchOptions moving;
@@ -201,6 +215,7 @@ int main(int argc, char** argv) {
   }
   if (step_command->parsed()) return run_step(step);
   if (moving_command->parsed()) return run_moving(moving);
+  if (pairs_command->parsed()) return run_pairs(pairs);
   if (register_command->parsed()) return run_register(clouds);
   if (watch_command->parsed()) return run_watch(watch);
   if (watch_tail_command->parsed()) return run_watch_tail(watch_tail);
