@@ -28,9 +28,9 @@ struct BackgroundObservation {
   Matrix6d covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
-  double scatter = 1;      ///< residuals against what noise explains
+  double scatter = 1;       ///< residuals against what noise explains
   double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
-  bool realigned = false;  ///< the background had to be searched: it lies far from where it should
+  bool realigned = false;   ///< the background had to be searched: it lies far from where it should
   std::array<std::size_t, 6> counts{};  ///< cells of each CellState
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
   /// Cells that could tell: remembered, not hidden by the robot.

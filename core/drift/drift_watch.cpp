@@ -282,8 +282,8 @@ void DriftWatch::judge(double now_s) {
   else if (model_wrong_)
     report_.verdict = DriftVerdict::robot_model_wrong;
   else if (!is_seen(now_s))
-    report_.verdict = in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front
-                                                       : DriftVerdict::no_evidence;
+    report_.verdict =
+        in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
   else if (bias_changed_)
     report_.verdict = DriftVerdict::depth_bias_changed;
   else if (scene_.has_changed() || now_s - denied_s_ < kEvidence_s)

@@ -62,9 +62,7 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const {
-    return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_);
-  }
+  bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
   /// The background is in view, where it was, and shows every direction.
   bool is_in_place() const;
 
@@ -110,14 +108,14 @@ class DriftWatch {
   DriftReport report_;
   std::optional<Innovation> innovation_;
   std::optional<Matrix6d> last_covariance_;  // of the last innovation
-  std::optional<Pose> T_learnt_now_;  // of the last realignment
+  std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
   bool moved_ = false;
   int frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0, learnt_s_ = -1;
-  double pinned_s_ = -1e9;                           // last time the background showed every direction
+  double pinned_s_ = -1e9;                          // last time the background showed every direction
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
-  double in_front_s_ = -1e9;  // last time something was
+  double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
   bool bias_changed_ = false, model_wrong_ = false;
   // What the robot said, newest last.

@@ -15,8 +15,8 @@ struct ShiftTestSettings {
 /// along the direction that the frames before point to, less the farthest that the tolerance reaches that
 /// way, in standard deviations. While the sensor stands its increments have mean <= 0 whatever the shift
 /// within the tolerance, and the direction does not know the frame it is used on. The limit follows from the
-/// false alarms allowed (Siegmund 1985). What all frames are off by together is tolerated, too, up to three of
-/// its standard deviations: a sum over frames does not average it out. Without I/O; not thread-safe.
+/// false alarms allowed (Siegmund 1985). What all frames are off by together is tolerated, too, up to three
+/// of its standard deviations: a sum over frames does not average it out. Without I/O; not thread-safe.
 class ShiftTest {
  public:
   explicit ShiftTest(const ShiftTestSettings& settings);

@@ -15,8 +15,8 @@
 #include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
-#include "server/live_cell/robot_motions.hpp"
 #include "server/live_cell/obstacle_watch.hpp"
+#include "server/live_cell/robot_motions.hpp"
 #include "server/live_cell/sensor_comparison.hpp"
 #include "server/storage/calibration_store.hpp"
 

@@ -136,7 +136,7 @@ int run_watch(const WatchOptions& options);
 struct WatchHoursOptions {
   Paths urdfs, models;
   std::uint64_t first_seed = 1, cells = 6;
-  double hours = 1;                                ///< of all cells together
+  double hours = 1;                                 ///< of all cells together
   std::filesystem::path innovations = "/dev/null";  ///< to write them to
 };
 int run_watch_hours(const WatchHoursOptions& options);

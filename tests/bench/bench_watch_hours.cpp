@@ -42,8 +42,8 @@ class WorkingCell {
     if (now_s >= part_s_) {
       carries_ = !carries_;
       if (carries_)
-        cell_.company().carry(Eigen::Vector3d(random.uniform(0.03, 0.4), random.uniform(0.03, 0.4),
-                                              random.uniform(0.03, 0.4)));
+        cell_.company().carry(
+            Eigen::Vector3d(random.uniform(0.03, 0.4), random.uniform(0.03, 0.4), random.uniform(0.03, 0.4)));
       else
         cell_.company().carry(std::nullopt);
       part_s_ = now_s + random.uniform(3, 15);

@@ -67,9 +67,10 @@ void Company::move(const sim::Joints& joints, std::int64_t now_ns) {
   middle /= static_cast<double>(link.vertices.size());
   const auto& part = cell_.robot.links[part_].mesh;
   const Eigen::Vector3d size =
-      2 * std::ranges::max_element(part.vertices, {}, &Eigen::Vector3f::squaredNorm)->cast<double>().cwiseAbs();
-  place(part_, cell_.robot.link_poses(joints)[flange_] *
-                   Eigen::Translation3d(middle + grip_.cwiseProduct(size)));
+      2 *
+      std::ranges::max_element(part.vertices, {}, &Eigen::Vector3f::squaredNorm)->cast<double>().cwiseAbs();
+  place(part_,
+        cell_.robot.link_poses(joints)[flange_] * Eigen::Translation3d(middle + grip_.cwiseProduct(size)));
 }
 
 }  // namespace calibrd::bench

@@ -128,14 +128,16 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
       ->required();
   command->add_option("--models", watch.models, "folders to look robot models up in");
   command->add_option("--first-seed", watch.first_seed);
-  command->add_option("--scenes", watch.scenes, "seeds; not each has a scene that can be watched")->check(CLI::Range(1, 1000000));
+  command->add_option("--scenes", watch.scenes, "seeds; not each has a scene that can be watched")
+      ->check(CLI::Range(1, 1000000));
   command->add_option("--event", watch.event, "only of this kind: the verdict that is right for it");
   return command;
 }
 
 CLI::App* add_watch_hours(CLI::App& app, WatchHoursOptions& hours) {
   CLI::App* command = app.add_subcommand("watch-hours", "watch sensors that stand in cells at work");
-  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")->required();
+  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
   command->add_option("--models", hours.models, "folders to look robot models up in");
   command->add_option("--first-seed", hours.first_seed);
   command->add_option("--cells", hours.cells)->check(CLI::Range(1, 100000));
@@ -155,7 +157,8 @@ CLI::App* add_watch_tail(CLI::App& app, WatchTailOptions& tail) {
 
 CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
   CLI::App* command = app.add_subcommand("watch-creep", "watch sensors that creep while they warm up");
-  command->add_option("--robot", creep.urdfs, "URDF; may be repeated, the cells take them in turn")->required();
+  command->add_option("--robot", creep.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
   command->add_option("--models", creep.models, "folders to look robot models up in");
   command->add_option("--first-seed", creep.first_seed);
   command->add_option("--cells", creep.cells)->check(CLI::Range(1, 100000));

@@ -83,8 +83,8 @@ std::unique_ptr<CalibratedScenes::One> CalibratedScenes::get(std::uint64_t seed,
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(
-      std::max(0.0, std::ceil(share * static_cast<double>(values.size())) - 1));
+  const auto rank =
+      static_cast<std::size_t>(std::max(0.0, std::ceil(share * static_cast<double>(values.size())) - 1));
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(rank));
   return values[rank];
 }

@@ -24,10 +24,10 @@ class Room {
   static Room single_wall();
 
   std::vector<Block> blocks;
-  double offset_m = 0;       ///< of the range
+  double offset_m = 0;  ///< of the range
   double noise_sigma_m = 0.0015;
   bool has_arm = true;
-  double hidden_share = 0;   ///< of the picture, from its left, by something 0.6 m ahead
+  double hidden_share = 0;  ///< of the picture, from its left, by something 0.6 m ahead
 
   View seen_from(const Pose& T_base_sensor, const std::vector<double>& joints, double stamp_s = 0);
 

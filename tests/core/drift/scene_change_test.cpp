@@ -39,7 +39,8 @@ class SceneChanges : public ::testing::Test {
     }
   }
   void show(double seconds, const Picture& picture, const std::vector<std::uint8_t>& ignored = {}) {
-    show(seconds, [&](double) { return picture; }, ignored);
+    show(
+        seconds, [&](double) { return picture; }, ignored);
   }
   SceneChange scene_{SceneChangeSettings{}, kWidth};
   double now_s_ = 0;

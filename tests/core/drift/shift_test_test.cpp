@@ -87,7 +87,8 @@ int frames_to_alarm(const Vector6d& offset, std::uint64_t seed) {
 }
 
 TEST(ShiftTest, ThresholdIsSiegmunds) {
-  // ARL = (exp(2k(h + 1.166)) - 2k(h + 1.166) - 1) / 2k²; k = 1, h = 10 gives 2.5e9, k = 0.5, h = 5 gives 940.
+  // ARL = (exp(2k(h + 1.166)) - 2k(h + 1.166) - 1) / 2k²; k = 1, h = 10 gives 2.5e9, k = 0.5, h = 5 gives
+  // 940.
   EXPECT_NEAR(cusum_threshold(1, 2.505e9), 10, 0.01);
   EXPECT_NEAR(cusum_threshold(0.5, 938), 5, 0.01);
   for (const double per_year : {10.0, 1.0, 0.1, 0.01}) {
