@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/service/motion_reports.hpp"
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
 
@@ -43,6 +44,12 @@ class CellService {
   /// still.
   virtual Result<CaptureArchive> record_capture(const CaptureRequest& request) = 0;
   virtual Result<Cloud> cloud(const CloudRequest& request) const = 0;
+
+  /// Moves the robot; only where the configuration allows it, and nothing speaks against it.
+  virtual Result<MotionReport> start_motion(const MotionRequest& request) = 0;
+  virtual MotionsReport motions() const = 0;                           ///< quick
+  virtual Result<MotionReport> motion(std::string_view id) const = 0;  ///< quick
+  virtual Result<MotionReport> stop_motion(std::string_view id) = 0;   ///< quick
 };
 
 }  // namespace calibrd::api

@@ -34,6 +34,11 @@ class BackgroundMap {
   /// views agree on, where the robot is not; `robot` holds one coarse mask per view (see RobotMask).
   void learn(std::span<const View> views, std::span<const std::vector<std::uint8_t>> robot);
 
+  /// Takes depths that were learnt before: one per cell, m, 0 = nothing known. Others are ignored.
+  void recall(std::span<const float> depth_m);
+  /// What recall() takes.
+  std::vector<float> depths_m() const;
+
   /// Takes what is there now for `chosen` cells (row-major, 1 = chosen).
   void relearn(const DepthImage& depth, std::span<const std::uint8_t> chosen);
 

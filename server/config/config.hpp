@@ -105,6 +105,21 @@ struct CalibrationConfig {
   std::string views = "still";
 };
 
+struct MotionRouteConfig {
+  std::vector<std::vector<double>> postures_deg;  ///< the model's order
+};
+
+struct MotionConfig {
+  bool enabled = false;
+  int port = 50240;
+  double max_speed_deg_s = 5;
+  double max_acceleration_deg_s2 = 10;
+  Duration hold{2000};
+  double path_tolerance_deg = 1;
+  double table_height_m = 0;
+  std::map<std::string, MotionRouteConfig> routes;
+};
+
 struct StorageConfig {
   std::filesystem::path path = "/var/lib/calibrd/calibrd.db";
 };
@@ -122,6 +137,7 @@ struct Config {
   PoseConfig pose;
   DriftConfig drift;
   CalibrationConfig calibration;
+  MotionConfig motion;
   StorageConfig storage;
   LogConfig log;
 };

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+#include "drivers/robot/robot_drivers.hpp"
 #include "server/config/section_declarer.hpp"
 
 namespace calibrd {
@@ -28,18 +29,20 @@ void declare_robot(std::vector<Setting>& table) {
       "Link whose frame is the base of every published pose. Empty: the URDF's root.");
   key("controller_frame", &RobotConfig::controller_frame, text(), "",
       "Link whose frame the controller calls its base; needed for vendors' pose formats.");
-  key("driver", &RobotConfig::driver, one_of({"simple_message"}), "",
-      "How joints are read from the controller.");
+  key("driver", &RobotConfig::driver, one_of(robot_driver_names()), "",
+      "How joints are read from the controller: docs/controllers.md names the makes.");
   key("host", &RobotConfig::host, text(), "", "Name or address of the robot controller.").required = true;
   key("port", &RobotConfig::port, integer(1, 65535), "",
-      "State port of the controller (MotoROS 50241; FANUC and ABB 11002).");
+      "State port of the controller (MotoROS 50241; FANUC and ABB 11002). ur_rtde: 30004 when it is not "
+      "set.");
   key("byte_order", &RobotConfig::byte_order, one_of({"big", "little"}), "",
-      "Byte order of the controller (FS100 big; DX100, DX200, YRC1000 little).");
-  key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0.");
+      "Byte order of the controller (FS100 and FANUC big; DX100, DX200, YRC1000 and ABB little). "
+      "simple_message.");
+  key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0. simple_message.");
   key("joint_count", &RobotConfig::joint_count, integer(1, 10), "",
-      "How many values of a message are taken, from the first.");
+      "How many values of a message are taken, from the first. ur_rtde: 6 when it is not set.");
   key("real_bytes", &RobotConfig::real_bytes, one_of_numbers({4, 8}), "",
-      "Size of the protocol's reals; 8 only for servers built so.");
+      "Size of the protocol's reals; 8 only for servers built so. simple_message.");
   key("max_position", &RobotConfig::max_position, positive_real(), "rad, m",
       "A message with a position beyond it is damage and is dropped.");
   key("max_velocity", &RobotConfig::max_velocity, positive_real(), "rad/s, m/s",
@@ -232,6 +235,7 @@ std::vector<Setting> build_table() {
   declare_pose(table);
   declare_drift(table);
   declare_calibration(table);
+  declare_motion(table);
   declare_rest(table);
   return table;
 }

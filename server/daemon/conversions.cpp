@@ -65,6 +65,7 @@ api::HttpServerSettings http_settings(const Config& config) {
 
 StateClientSettings link_settings(const RobotConfig& robot) {
   StateClientSettings settings;
+  settings.driver = robot.driver;
   settings.host = robot.host;
   settings.port = robot.port;
   settings.byte_order =
@@ -81,6 +82,23 @@ StateClientSettings link_settings(const RobotConfig& robot) {
   return settings;
 }
 
+MotionClientSettings motion_client_settings(const Config& config) {
+  const auto link = link_settings(config.robot);
+  MotionClientSettings settings;
+  settings.host = link.host;
+  settings.port = config.motion.port;
+  settings.state_port = link.port;
+  settings.motion.format = {link.byte_order, static_cast<std::size_t>(link.real_bytes)};
+  settings.motion.group = link.group;
+  settings.motion.limits = {config.motion.max_speed_deg_s * kRadPerDeg,
+                            config.motion.max_acceleration_deg_s2 * kRadPerDeg};
+  settings.motion.path.joint_rad = config.motion.path_tolerance_deg * kRadPerDeg;
+  settings.motion.hold = config.motion.hold;
+  settings.motion.connect_timeout = link.link.connect_timeout;
+  settings.watch.stale_after = link.link.stale_after;
+  return settings;
+}
+
 SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig& sensor) {
   SensorProcessSettings settings;
   settings.id = id;
@@ -94,6 +112,19 @@ SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig&
   settings.stream.image = image_kind(sensor.image);
   settings.stream.mirror = sensor.mirror;
   settings.openni_directory = sensor.driver_directory;
+  return settings;
+}
+
+RobotMotionSettings motion_settings(const MotionConfig& motion) {
+  RobotMotionSettings settings;
+  settings.enabled = motion.enabled;
+  settings.table_height_m = motion.table_height_m;
+  for (const auto& [name, route] : motion.routes) {
+    auto postures = route.postures_deg;
+    for (auto& posture : postures)
+      for (double& angle : posture) angle *= kRadPerDeg;
+    settings.routes_rad[name] = std::move(postures);
+  }
   return settings;
 }
 
@@ -138,6 +169,7 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.jobs.collector.min_distance_rad = config.calibration.min_posture_distance_deg * kRadPerDeg;
   settings.jobs.collector.frames_per_posture = config.calibration.frames_per_posture;
   settings.jobs.collect_timeout = config.calibration.collect_timeout;
+  settings.motion = motion_settings(config.motion);
   return settings;
 }
 

@@ -23,9 +23,10 @@ Clock::time_point time_of(double stamp_s) {
 
 }  // namespace
 
-void DriftMonitor::set_pose(const Pose& T_base_sensor, std::vector<View> views) {
+void DriftMonitor::set_pose(const std::string& calibration_id, const Pose& T_base_sensor,
+                            Background background) {
   const std::lock_guard lock(mutex_);
-  order_ = Order{T_base_sensor, std::move(views)};
+  order_ = Order{calibration_id, T_base_sensor, std::move(background)};
   has_pose_ = true;
   newest_ = {};
   in_place_ = wants_check_ = false;
@@ -40,7 +41,11 @@ void DriftMonitor::take_order() {
   if (!order) return;
   passed_.clear();
   watch_->set_pose(order->T_base_sensor);
-  if (!order->views.empty()) watch_->learn(order->views);
+  const auto& [views, depth_m] = order->background;
+  if (!depth_m.empty()) watch_->recall(depth_m);
+  if (views.empty()) return;
+  watch_->learn(views);
+  if (on_learnt_) on_learnt_(order->calibration_id, watch_->background().depths_m());
 }
 
 void DriftMonitor::add_frame(const View& frame) {

@@ -80,6 +80,7 @@ void LiveRobot::take(const ControllerJoints& joints) {
   const std::lock_guard lock(mutex_);
   mapping_problem_ = positions ? std::string() : positions.error().message();
   if (!positions) return;
+  controller_values_ = joints.positions_rad;
   history_.add({*std::move(positions), velocities ? *std::move(velocities) : std::vector<double>(),
                 joints.sequence, joints.stamp - latency_});
 }
@@ -98,6 +99,11 @@ std::optional<JointState> LiveRobot::newest_joints() const {
   const std::lock_guard lock(mutex_);
   const auto* newest = history_.newest();
   return newest ? std::optional<JointState>(*newest) : std::nullopt;
+}
+
+Result<std::vector<double>> LiveRobot::controller_values(std::span<const double> positions_rad) const {
+  const std::lock_guard lock(mutex_);
+  return mapping_.controller_values(positions_rad, controller_values_);
 }
 
 api::RobotReport LiveRobot::report() const {

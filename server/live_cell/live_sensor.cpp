@@ -13,6 +13,8 @@ constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
 constexpr std::size_t kMostPending = 15;  ///< frames that wait for joints: of controllers later than sensors
+/// A sensor that has moved is seen from frame to frame within this, once it rests.
+constexpr double kRest_m = 0.005, kRest_rad = 0.004;
 
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
@@ -21,13 +23,14 @@ double seconds_of(Clock::time_point time) {
 }  // namespace
 
 LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-                       std::function<void(const api::PoseReport&)> on_pose, std::unique_ptr<DriftWatch> watch,
+                       std::function<void(const api::PoseReport&)> on_pose,
+                       std::unique_ptr<DriftMonitor> monitor,
                        std::unique_ptr<TimeOffsetEstimator> time_offset)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
       on_pose_(std::move(on_pose)),
-      monitor_(watch ? std::make_unique<DriftMonitor>(std::move(watch)) : nullptr),
+      monitor_(std::move(monitor)),
       reach_(std::make_shared<const LinkReach>(robot.model())),
       offset_(std::move(time_offset), reach_, {.latency = settings_.gate.latency}),
       gate_(settings_.gate, reach_),
@@ -164,6 +167,7 @@ void LiveSensor::watch_offset() {
 void LiveSensor::watch(const Sighting& sighting) {
   if (!monitor_) return;
   monitor_->add_frame(sighting.view);
+  notice_move();
   const std::lock_guard lock(mutex_);  // a pose that is set now resets what the monitor says
   if (sighting.stamp <= lost_at_) return;
   const bool was_plausible = watch_.is_plausible();
@@ -171,6 +175,18 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
+}
+
+/// Views of before and after a move never come together, also while the sensor goes on moving.
+void LiveSensor::notice_move() {
+  const auto seen = monitor_->T_base_sensor_seen();
+  if (!seen) return resting_at_.reset();
+  if (resting_at_) {
+    const Vector6d since = difference(*resting_at_, *seen);
+    if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
+  }
+  resting_at_ = seen;
+  for (const auto& task : open_tasks()) task->start_over();
 }
 
 bool LiveSensor::is_check_due(Clock::time_point now) const {
@@ -213,9 +229,10 @@ void LiveSensor::tell_of_pose() {
   if (on_pose_) on_pose_(pose());
 }
 
-void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views) {
+void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                          DriftMonitor::Background background) {
   const std::lock_guard lock(mutex_);
-  if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(views));
+  if (monitor_) monitor_->set_pose(known.calibration_id, *known.result.T_base_sensor, std::move(background));
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;

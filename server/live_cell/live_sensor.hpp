@@ -54,11 +54,12 @@ struct LiveSensorSettings {
 class LiveSensor {
  public:
   /// `robot` must outlive it.
-  /// `watch`: nothing, or what follows the pose frame by frame.
+  /// `monitor`: nothing, or what follows the pose frame by frame.
   /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
   /// `time_offset`: null when the configured latencies are to be taken for true.
   LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-             std::function<void(const api::PoseReport&)> on_pose = {}, std::unique_ptr<DriftWatch> watch = {},
+             std::function<void(const api::PoseReport&)> on_pose = {},
+             std::unique_ptr<DriftMonitor> monitor = {},
              std::unique_ptr<TimeOffsetEstimator> time_offset = {});
   ~LiveSensor();
 
@@ -75,9 +76,9 @@ class LiveSensor {
 
   const std::string& basis() const { return settings_.basis; }
 
-  /// The pose being served. A stored one is unverified until a check agrees. `views`: those it was just found
-  /// from.
-  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
+  /// The pose being served. A stored one is unverified until a check agrees. `background`: of the pose.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                DriftMonitor::Background background = {});
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
@@ -110,6 +111,7 @@ class LiveSensor {
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void watch(const Sighting& sighting);
+  void notice_move();
   bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
@@ -128,7 +130,8 @@ class LiveSensor {
 
   // The thread's own.
   const std::shared_ptr<const LinkReach> reach_;
-  OffsetWatch offset_;  // its report(): anybody's
+  OffsetWatch offset_;              // its report(): anybody's
+  std::optional<Pose> resting_at_;  // where a sensor that has moved was seen first, or last come to rest
   ViewGate gate_;
   std::deque<std::shared_ptr<Sighting>> pending_;  // entered, their joints not all there; oldest first
   std::uint64_t restarts_ = 0;                     // of the source, as far as noticed

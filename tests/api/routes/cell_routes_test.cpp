@@ -21,7 +21,8 @@ TEST_F(CellRoutes, UnknownPathIs404AndWrongMethodIs405WithAllow) {
 TEST_F(CellRoutes, SensorsAndOneSensor) {
   cell_.sensor_report.views.refused = {{"moving", 12}};
   cell_.sensor_report.views.timing_error_m = 0.0002;
-  cell_.sensor_report.time_offset = {true, true, Seconds(0.031), Seconds(0.0008), Seconds(0.001), Seconds(2), ""};
+  cell_.sensor_report.time_offset = {true,       true, Seconds(0.031), Seconds(0.0008), Seconds(0.001),
+                                     Seconds(2), ""};
   EXPECT_EQ(get("/api/v1/sensors").status, 200);
   EXPECT_EQ(body().at("sensors").as_array().size(), 1U);
   EXPECT_EQ(get("/api/v1/sensors/kinect2").status, 200);
