@@ -18,6 +18,7 @@ void add_calibration_routes(Router& router, CellService& service);
 void add_several_sensors_routes(Router& router, CellService& service);
 void add_obstacle_routes(Router& router, CellService& service);
 void add_next_posture_routes(Router& router, CellService& service);
+void add_motion_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);
 void add_health_routes(Router& router, CellService& service);
 

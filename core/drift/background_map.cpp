@@ -18,9 +18,10 @@ constexpr double kOffPlane = 0.004, kLeastOffPlane_m = 0.004;
 constexpr double kMinCosine = 0.2;
 constexpr int kMargin = 2;  // cells around the robot that may be robot: flying pixels, joints a moment off
 
-/// Mean of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts `values`.
-float agreed_depth(std::vector<float>& values) {
-  if (values.empty()) return 0;
+/// Mean and size of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts
+/// `values`.
+std::pair<float, std::size_t> agreed_depth(std::vector<float>& values) {
+  if (values.empty()) return {0, 0};
   std::ranges::sort(values);
   std::size_t best_begin = 0, best_count = 0;
   for (std::size_t begin = 0, end = 0; begin < values.size(); ++begin) {
@@ -30,10 +31,10 @@ float agreed_depth(std::vector<float>& values) {
       best_begin = begin;
     }
   }
-  if (2 * best_count <= values.size() && values.size() > 1) return 0;
+  if (2 * best_count <= values.size() && values.size() > 1) return {0, 0};
   float sum = 0;
   for (std::size_t i = best_begin; i < best_begin + best_count; ++i) sum += values[i];
-  return sum / static_cast<float>(best_count);
+  return {sum / static_cast<float>(best_count), best_count};
 }
 
 }  // namespace
@@ -49,19 +50,46 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
         const double z = views[v].depth.depth_m(kBackgroundStride * x, kBackgroundStride * y);
         if (z > 0) values.push_back(static_cast<float>(z));
       }
-      cells_[cell].depth_m = agreed_depth(values);
+      const auto [depth_m, count] = agreed_depth(values);
+      cells_[cell].depth_m = depth_m;
+      cells_[cell].frames = static_cast<float>(count);
     }
   }
   fit_planes();
 }
 
-void BackgroundMap::relearn(const DepthImage& depth, std::span<const std::uint8_t> chosen) {
-  for (int y = 0; y < grid_.height; ++y)
-    for (int x = 0; x < grid_.width; ++x)
-      if (const auto cell = static_cast<std::size_t>(y * grid_.width + x); chosen[cell] != 0)
-        cells_[cell].depth_m =
-            static_cast<float>(depth.depth_m(kBackgroundStride * x, kBackgroundStride * y));
+void BackgroundMap::recall(std::span<const float> depth_m) {
+  if (depth_m.size() != cells_.size()) return;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    cells_[i].depth_m = depth_m[i];
+    cells_[i].frames = kMostFrames;  // it is there to be compared with, not to be added to
+  }
   fit_planes();
+}
+
+std::vector<float> BackgroundMap::depths_m() const {
+  std::vector<float> depths;
+  for (const BackgroundCell& cell : cells_) depths.push_back(cell.depth_m);
+  return depths;
+}
+
+void BackgroundMap::relearn(std::span<const float> depth_m, std::span<const float> frames,
+                            std::span<const std::uint8_t> chosen) {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (chosen[i] == 0) continue;
+    cells_[i].depth_m = depth_m[i];
+    cells_[i].frames = frames[i];
+  }
+  fit_planes();
+}
+
+void BackgroundMap::refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen) {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    BackgroundCell& cell = cells_[i];
+    if (chosen[i] == 0 || depth_m[i] <= 0 || cell.depth_m <= 0 || cell.frames >= kMostFrames) continue;
+    cell.frames += 1;
+    cell.depth_m += (depth_m[i] - cell.depth_m) / cell.frames;
+  }
 }
 
 void BackgroundMap::fit_planes() {

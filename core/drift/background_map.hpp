@@ -20,6 +20,7 @@ struct BackgroundCell {
   float depth_m = 0;  ///< along the optical axis, as the sensor measured it; 0 = nothing known
   Eigen::Vector3f normal_per_m = Eigen::Vector3f::Zero();  ///< zero: no plane, an edge
   float sigma_m = 0;                                       ///< of one frame's depth here
+  float frames = 0;                                        ///< that depth_m is the mean of
   bool has_plane() const { return normal_per_m != Eigen::Vector3f::Zero(); }
 };
 
@@ -34,8 +35,18 @@ class BackgroundMap {
   /// views agree on, where the robot is not; `robot` holds one coarse mask per view (see RobotMask).
   void learn(std::span<const View> views, std::span<const std::vector<std::uint8_t>> robot);
 
-  /// Takes what is there now for `chosen` cells (row-major, 1 = chosen).
-  void relearn(const DepthImage& depth, std::span<const std::uint8_t> chosen);
+  /// Takes depths that were learnt before: one per cell, m, 0 = nothing known. Others are ignored.
+  void recall(std::span<const float> depth_m);
+  /// What recall() takes.
+  std::vector<float> depths_m() const;
+
+  /// Takes `depth_m`, each the mean of `frames` frames, for the `chosen` cells (row-major, 1 = chosen).
+  void relearn(std::span<const float> depth_m, std::span<const float> frames,
+               std::span<const std::uint8_t> chosen);
+  /// Takes one more frame into the means of the `chosen` cells, whose planes stay what they are. No mean is
+  /// of more than kMostFrames: what comes later is to be compared with it, not to become part of it.
+  void refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen);
+  static constexpr float kMostFrames = 60;
 
   /// Too little to say anything of the pose.
   bool is_empty() const { return planes_ == 0; }

@@ -28,8 +28,9 @@ struct BackgroundObservation {
   Matrix6d covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
-  double scatter = 1;      ///< residuals against what noise explains
-  bool realigned = false;  ///< the background had to be searched: it lies far from where it should
+  double scatter = 1;       ///< residuals against what noise explains
+  double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
+  bool realigned = false;   ///< the background had to be searched: it lies far from where it should
   std::array<std::size_t, 6> counts{};  ///< cells of each CellState
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
   /// Cells that could tell: remembered, not hidden by the robot.
@@ -76,11 +77,13 @@ class BackgroundMatcher {
   struct Row {
     std::uint32_t cell = 0, cluster = 0;
     float sigma_m = 0;
-    Eigen::Matrix<float, kParameters, 1> slope;  // of the depth by the parameters
+    /// Of the depth by the parameters; an eighth, 0, makes two whole vectors of it.
+    Eigen::Matrix<float, kParameters + 1, 1> slope = Eigen::Matrix<float, kParameters + 1, 1>::Zero();
   };
   struct Fit;
   void sample(const DepthImage& depth);
   Fit fit(std::span<const std::uint8_t> robot);
+  Fit descend(std::span<const std::uint8_t> robot, double first_kernel_m);
   void collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m, Fit& fit);
   void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
 

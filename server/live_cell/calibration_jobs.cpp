@@ -102,6 +102,8 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   auto job = std::make_shared<Job>();
   auto collector = settings_.collector;
   collector.postures = request.postures.value_or(collector.postures);
+  // A robot at work must not be waited for while there is no pose.
+  collector.moving_views = collector.moving_views || request.after_move;
   if (!guess) collector.postures = std::max(collector.postures, kPosturesFromNothing);
   job->report.id = new_id();
   job->report.sensor_id = sensor.id();

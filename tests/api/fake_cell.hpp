@@ -24,6 +24,10 @@ class FakeCell : public CellService {
   PostureSuggestion suggestion;
   mutable NextPostureRequest last_next_posture;
   std::string cancelled, activated;
+  MotionRequest last_motion;
+  std::function<Result<MotionReport>(const MotionRequest&)> on_motion;
+  MotionReport motion_report;
+  std::string stopped;
   ObstaclesReport obstacles_report;
   MergedCloud merged_report;
   mutable MergedCloudRequest last_merged;
@@ -38,6 +42,9 @@ class FakeCell : public CellService {
     robot_report.link_state = "streaming";
     calibration_report.id = "c1";
     calibration_report.sensor_id = "kinect2";
+    motion_report.id = "m1";
+    motion_report.route = "tour";
+    motion_report.postures = 3;
   }
 
   void make_calibrated() {
@@ -111,12 +118,27 @@ class FakeCell : public CellService {
     return CellCalibrations{{calibration_report}, refused_starts};
   }
 
+  Result<MotionReport> start_motion(const MotionRequest& request) override {
+    last_motion = request;
+    return on_motion ? on_motion(request) : Result<MotionReport>(motion_report);
+  }
+  MotionsReport motions() const override { return {true, "it moves", {"tour"}, {motion_report}}; }
+  Result<MotionReport> motion(std::string_view id) const override { return of_motion(id); }
+  Result<MotionReport> stop_motion(std::string_view id) override {
+    stopped = id;
+    return of_motion(id);
+  }
+
  private:
   mutable std::mutex mutex_;  // guards pose_report while a server runs
   template <class T>
   Result<T> of_sensor(std::string_view id, T value) const {
     if (id != "kinect2") return fail(ApiError::no_such_sensor, std::string(id));
     return value;
+  }
+  Result<MotionReport> of_motion(std::string_view id) const {
+    if (id != "m1") return fail(ApiError::no_such_motion, std::string(id));
+    return motion_report;
   }
   Result<CalibrationReport> of_calibration(std::string_view id) const {
     if (id != "c1") return fail(ApiError::no_such_calibration, std::string(id));

@@ -91,6 +91,27 @@ struct TrackOptions {
 };
 int run_track(const TrackOptions& options);
 
+struct StepOptions {
+  std::filesystem::path urdf;
+  Paths models;
+  int port = 50241;  ///< of a controller on this machine
+  int seconds = 30;
+};
+int run_step(const StepOptions& options);
+
+struct MovingBenchOptions {
+  Paths urdfs;  ///< the scenes take them in turn
+  Paths models;
+  std::string level = "cell";
+  std::uint64_t first_seed = 1, scenes = 10;
+  std::size_t postures = 10;
+  double speed_m_s = 0.25;
+  double offset_ms = 30, jitter_ms = 1;
+  double learn_s = 30;  ///< of motion, for the time offset
+  bool also_uncorrected = false;
+};
+int run_moving(const MovingBenchOptions& options);
+
 struct ScenesOptions {
   Paths urdfs;  ///< the scenes take them in turn
   Paths models;
@@ -107,10 +128,33 @@ int run_scenes(ScenesOptions options);
 
 struct WatchOptions {
   Paths urdfs, models;  ///< the scenes take the robots in turn
-  std::uint64_t first_seed = 1, events = 21;
+  std::uint64_t first_seed = 1, scenes = 3;
+  std::string event;  ///< the verdict that is right for it; empty: one of each kind in every scene
 };
 int run_watch(const WatchOptions& options);
 
+struct WatchHoursOptions {
+  Paths urdfs, models;
+  std::uint64_t first_seed = 1, cells = 6;
+  double hours = 1;                                 ///< of all cells together
+  std::filesystem::path innovations = "/dev/null";  ///< to write them to
+};
+int run_watch_hours(const WatchHoursOptions& options);
+
+struct WatchTailOptions {
+  Paths innovations;
+  double hours = 72, block_s = 60;
+  std::uint64_t seed = 1;
+};
+int run_watch_tail(const WatchTailOptions& options);
+
+struct WatchCreepOptions {
+  Paths urdfs, models;
+  std::uint64_t first_seed = 1, cells = 8;
+  double per_hour_mm = 1;  ///< or mrad
+  double seen_s = 1;       ///< of every minute
+};
+int run_watch_creep(const WatchCreepOptions& options);
 struct PairsOptions {
   Paths urdfs, models;  ///< the scenes take the robots in turn
   std::uint64_t first_seed = 1, scenes = 20;

@@ -66,6 +66,37 @@ CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   return command;
 }
 
+CLI::App* add_step(CLI::App& app, StepOptions& step) {
+  CLI::App* command =
+      app.add_subcommand("step", "time from a controller's packet to the virtual cell in step with it");
+  command->add_option("URDF", step.urdf)->required();
+  command->add_option("--models", step.models);
+  command->add_option("--port", step.port, "of a controller on this machine")->check(CLI::Range(1, 65535));
+  command->add_option("--seconds", step.seconds)->check(CLI::Range(1, 86400));
+  return command;
+}
+
+CLI::App* add_moving(CLI::App& app, MovingBenchOptions& moving) {
+  CLI::App* command =
+      app.add_subcommand("moving", "calibrate from views of a moving robot, and of the same postures still");
+  command->add_option("--robot", moving.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", moving.models, "folders to look robot models up in");
+  command->add_option("--level", moving.level)->check(CLI::IsMember({"clean", "cell", "field"}));
+  command->add_option("--first-seed", moving.first_seed);
+  command->add_option("--scenes", moving.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", moving.postures)->check(CLI::Range(2, 1000));
+  command->add_option("--speed-m-s", moving.speed_m_s, "of the robot's fastest point")
+      ->check(CLI::Range(0.02, 2.0));
+  command->add_option("--offset-ms", moving.offset_ms, "how much later frames arrive than joints")
+      ->check(CLI::Range(-150.0, 250.0));
+  command->add_option("--jitter-ms", moving.jitter_ms)->check(CLI::Range(0.0, 50.0));
+  command->add_option("--learn-s", moving.learn_s, "motion seen before the views are taken")
+      ->check(CLI::Range(1.0, 3600.0));
+  command->add_flag("--uncorrected", moving.also_uncorrected, "also with the offset left out");
+  return command;
+}
+
 CLI::App* add_register(CLI::App& app, RegisterOptions& clouds) {
   CLI::App* command = app.add_subcommand("register", "register two PLY clouds, starting as they lie");
   command->add_option("--source", clouds.source)->required();
@@ -97,7 +128,42 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
       ->required();
   command->add_option("--models", watch.models, "folders to look robot models up in");
   command->add_option("--first-seed", watch.first_seed);
-  command->add_option("--events", watch.events)->check(CLI::Range(1, 1000000));
+  command->add_option("--scenes", watch.scenes, "seeds; not each has a scene that can be watched")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--event", watch.event, "only of this kind: the verdict that is right for it");
+  return command;
+}
+
+CLI::App* add_watch_hours(CLI::App& app, WatchHoursOptions& hours) {
+  CLI::App* command = app.add_subcommand("watch-hours", "watch sensors that stand in cells at work");
+  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
+  command->add_option("--models", hours.models, "folders to look robot models up in");
+  command->add_option("--first-seed", hours.first_seed);
+  command->add_option("--cells", hours.cells)->check(CLI::Range(1, 100000));
+  command->add_option("--hours", hours.hours, "of all cells together")->check(CLI::Range(0.0, 1e5));
+  command->add_option("--innovations", hours.innovations, "file to write them to, for watch-tail");
+  return command;
+}
+
+CLI::App* add_watch_tail(CLI::App& app, WatchTailOptions& tail) {
+  CLI::App* command = app.add_subcommand("watch-tail", "recorded innovations through the test alone");
+  command->add_option("INNOVATIONS", tail.innovations, "files of watch-hours")->required();
+  command->add_option("--hours", tail.hours, "to draw from their blocks")->check(CLI::Range(0.0, 1e6));
+  command->add_option("--block-s", tail.block_s)->check(CLI::Range(1.0, 1e6));
+  command->add_option("--seed", tail.seed);
+  return command;
+}
+
+CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
+  CLI::App* command = app.add_subcommand("watch-creep", "watch sensors that creep while they warm up");
+  command->add_option("--robot", creep.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
+  command->add_option("--models", creep.models, "folders to look robot models up in");
+  command->add_option("--first-seed", creep.first_seed);
+  command->add_option("--cells", creep.cells)->check(CLI::Range(1, 100000));
+  command->add_option("--per-hour-mm", creep.per_hour_mm, "or mrad")->check(CLI::Range(0.01, 1e3));
+  command->add_option("--seen-s", creep.seen_s, "of every minute")->check(CLI::Range(0.1, 60.0));
   return command;
 }
 
@@ -133,16 +199,31 @@ int main(int argc, char** argv) {
   const CLI::App* scenes_command = add_scenes(app, scenes);
   const CLI::App* register_command = add_register(app, clouds);
   const CLI::App* watch_command = add_watch(app, watch);
+  WatchHoursOptions watch_hours;
+  WatchTailOptions watch_tail;
+  WatchCreepOptions watch_creep;
+  const CLI::App* watch_tail_command = add_watch_tail(app, watch_tail);
+  const CLI::App* watch_creep_command = add_watch_creep(app, watch_creep);
+  const CLI::App* watch_hours_command = add_watch_hours(app, watch_hours);
   const CLI::App* pairs_command = add_pairs(app, pairs);
   const CLI::App* track_command = add_track(app, track);
+  StepOptions step;
+  MovingBenchOptions moving;
+  const CLI::App* step_command = add_step(app, step);
+  const CLI::App* moving_command = add_moving(app, moving);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (step_command->parsed()) return run_step(step);
+  if (moving_command->parsed()) return run_moving(moving);
   if (pairs_command->parsed()) return run_pairs(pairs);
   if (register_command->parsed()) return run_register(clouds);
   if (watch_command->parsed()) return run_watch(watch);
+  if (watch_tail_command->parsed()) return run_watch_tail(watch_tail);
+  if (watch_creep_command->parsed()) return run_watch_creep(watch_creep);
+  if (watch_hours_command->parsed()) return run_watch_hours(watch_hours);
   if (track_command->parsed()) return run_track(track);
   if (global_command->parsed()) return run_global(global);
   if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {

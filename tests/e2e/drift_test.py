@@ -79,6 +79,13 @@ class Drift(CellTest):
         pose = daemon.pose()
         self.assertEqual((pose["state"], pose["job"], pose["candidate"]), ("drifted", None, None))
 
+    def test_a_sensor_that_was_moved_while_nobody_watched_is_found_out(self):
+        simulator, daemon = self.watched("drift.healing=off")
+        daemon.stop()
+        simulator.tell("POST", f"/sensors/{SENSOR}/knock", **SMALL)  # too small for a check against the robot
+        again = self.serve(simulator, "drift.healing=off").wait_ready()
+        wait_until("the pose is called drifted", lambda: self.assertFalse(again.pose()["valid"]) or again.pose()["state"] == "drifted")
+
     def test_a_person_and_a_moved_box_are_told_from_a_moved_sensor(self):
         simulator, daemon = self.watched()
         simulator.tell("PUT", "/person", present=True, from_m=[0.9, -1.6], to_m=[0.9, 1.6], speed_m_s=0.8)
