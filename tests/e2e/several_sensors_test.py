@@ -50,6 +50,7 @@ class SeveralSensors(CellTest):
             for key in ("fx", "fy"):
                 camera[key] *= (wrong or {}).get(name, 1.0)
             settings += [f"sensors.{name}.{key}={camera[key]}" for key in ("fx", "fy", "cx", "cy", "distortion")]
+        self.settings = settings
         self.programs.append(daemon := Daemon(self.folder, simulator.controller_port, simulator.world_file, *settings))
         simulator.tell("PUT", "/motion", mode="run", seed=11, count=12, speed_rad_s=1.5, hold_s=1.2)
         return simulator, daemon.wait_ready()
@@ -166,6 +167,25 @@ class SeveralSensors(CellTest):
         self.assertIn("sensors_disagree", codes)
         valid = [daemon.json(f"/api/v1/sensors/{job['sensor']}/pose")["valid"] for job in ended]
         self.assertEqual(sorted(valid), [False, True])
+
+    def test_a_served_pose_that_a_better_one_contradicts_is_served_no_longer_not_even_after_a_restart(self):
+        simulator, daemon = self.start(SENSOR, "left", wrong={"left": 1.026})
+        for name in ("left", SENSOR):
+            job, = call(daemon.port, "POST", "/api/v1/cell/calibrations", {"sensors": [name]}).json()["calibrations"]
+            ended = daemon.wait_calibration(job["location"])
+            self.assertEqual(ended["verdict"], "accepted", ended)
+        self.assertIn("sensors_disagree", [reason["code"] for reason in ended["result"]["reasons"]])
+        pose = daemon.json("/api/v1/sensors/left/pose")
+        self.assertEqual((pose["valid"], pose["state"]), (False, "unverified"))
+        self.assertIn("does not lie at the same place", pose["reason"])
+        self.assertTrue(daemon.json(f"/api/v1/sensors/{SENSOR}/pose")["valid"])
+
+        daemon.stop()
+        self.programs.append(daemon := Daemon(self.folder, simulator.controller_port, simulator.world_file, *self.settings,
+                                              "drift.healing=off"))
+        daemon.wait_ready()
+        wait_until("the other pose is valid again", lambda: daemon.json(f"/api/v1/sensors/{SENSOR}/pose")["valid"])
+        self.assertEqual(daemon.json("/api/v1/sensors/left/pose")["state"], "drifted")
 
 
 if __name__ == "__main__":
