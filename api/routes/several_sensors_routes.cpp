@@ -71,6 +71,8 @@ json::object pair_json(const SensorPair& pair) {
   body["sigmas"] = std::isfinite(check.sigmas) ? json::value(check.sigmas) : json::value(nullptr);
   body["shift_m"] = check.shift_m;
   body["turn_rad"] = check.turn_rad;
+  body["shift_sigma_m"] = std::sqrt(check.covariance.bottomRightCorner<3, 3>().trace());
+  body["turn_sigma_rad"] = std::sqrt(check.covariance.topLeftCorner<3, 3>().trace());
   return body;
 }
 

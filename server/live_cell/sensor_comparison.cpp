@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/live_cell/sensor_comparison.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <thread>
@@ -12,7 +13,7 @@ namespace calibrd {
 namespace {
 
 /// A pose just published learns its background with its sensor's next frame.
-constexpr auto kPatience = std::chrono::seconds(2), kLook = std::chrono::milliseconds(20);
+constexpr std::chrono::milliseconds kPatience{2000}, kLook{20};
 
 struct Known {
   std::shared_ptr<const BackgroundMap> background;

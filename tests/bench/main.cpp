@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "bench.hpp"
 #include "core/base/memory.hpp"
@@ -35,12 +38,13 @@ CLI::App* add_global(CLI::App& app, GlobalOptions& options) {
   return command;
 }
 
-void add_render(CLI::App& app, RenderOptions& render) {
+CLI::App* add_render(CLI::App& app, RenderOptions& render) {
   CLI::App* command = app.add_subcommand("render", "time the virtual sensor, joint update included");
   command->add_option("URDF", render.urdf)->required();
   command->add_option("--models", render.models);
   command->add_option("--distance-m", render.distance_m)->check(CLI::Range(0.1, 100.0));
   command->add_option("--runs", render.runs)->check(CLI::Range(1, 1000000));
+  return command;
 }
 
 CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
@@ -179,57 +183,49 @@ CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
   return command;
 }
 
+int run_checked_scenes(const ScenesOptions& scenes) {
+  if (!scenes.bound || (scenes.noise_only && scenes.depth_only)) return run_scenes(scenes);
+  std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
+  return 2;
+}
+
+struct Command {
+  const CLI::App* declared;
+  std::function<int()> run;
+};
+
+template <class Options, class Run>
+Command command(CLI::App& app, CLI::App* (*declare)(CLI::App&, Options&), Run run) {
+  const auto options = std::make_shared<Options>();
+  const CLI::App* declared = declare(app, *options);
+  return {declared, [options, run] { return run(*options); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   calibrd::keep_freed_memory();
   CLI::App app("Measures calibrd. Prints JSON lines.");
   app.require_subcommand(1);
-  FineOptions fine;
-  GlobalOptions global;
-  RenderOptions render;
-  ScenesOptions scenes;
-  RegisterOptions clouds;
-  TrackOptions track;
-  WatchOptions watch;
-  PairsOptions pairs;
-  const CLI::App* fine_command = add_fine(app, fine);
-  const CLI::App* global_command = add_global(app, global);
-  add_render(app, render);
-  const CLI::App* scenes_command = add_scenes(app, scenes);
-  const CLI::App* register_command = add_register(app, clouds);
-  const CLI::App* watch_command = add_watch(app, watch);
-  WatchHoursOptions watch_hours;
-  WatchTailOptions watch_tail;
-  WatchCreepOptions watch_creep;
-  const CLI::App* watch_tail_command = add_watch_tail(app, watch_tail);
-  const CLI::App* watch_creep_command = add_watch_creep(app, watch_creep);
-  const CLI::App* watch_hours_command = add_watch_hours(app, watch_hours);
-  const CLI::App* pairs_command = add_pairs(app, pairs);
-  const CLI::App* track_command = add_track(app, track);
-  StepOptions step;
-  MovingBenchOptions moving;
-  const CLI::App* step_command = add_step(app, step);
-  const CLI::App* moving_command = add_moving(app, moving);
+  const std::vector<Command> commands{command(app, add_fine, run_fine),
+                                      command(app, add_global, run_global),
+                                      command(app, add_render, run_render),
+                                      command(app, add_scenes, run_checked_scenes),
+                                      command(app, add_register, run_register),
+                                      command(app, add_watch, run_watch),
+                                      command(app, add_watch_tail, run_watch_tail),
+                                      command(app, add_watch_creep, run_watch_creep),
+                                      command(app, add_watch_hours, run_watch_hours),
+                                      command(app, add_pairs, run_pairs),
+                                      command(app, add_track, run_track),
+                                      command(app, add_step, run_step),
+                                      command(app, add_moving, run_moving)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (step_command->parsed()) return run_step(step);
-  if (moving_command->parsed()) return run_moving(moving);
-  if (pairs_command->parsed()) return run_pairs(pairs);
-  if (register_command->parsed()) return run_register(clouds);
-  if (watch_command->parsed()) return run_watch(watch);
-  if (watch_tail_command->parsed()) return run_watch_tail(watch_tail);
-  if (watch_creep_command->parsed()) return run_watch_creep(watch_creep);
-  if (watch_hours_command->parsed()) return run_watch_hours(watch_hours);
-  if (track_command->parsed()) return run_track(track);
-  if (global_command->parsed()) return run_global(global);
-  if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {
-    std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
-    return 2;
-  }
-  if (scenes_command->parsed()) return run_scenes(scenes);
-  return fine_command->parsed() ? run_fine(fine) : run_render(render);
+  for (const Command& each : commands)
+    if (each.declared->parsed()) return each.run();
+  return 2;
 }

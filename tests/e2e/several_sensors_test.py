@@ -35,7 +35,8 @@ class Points:
 
 
 class SeveralSensors(CellTest):
-    def start(self, *sensors: str) -> tuple[Simulator, Daemon]:
+    def start(self, *sensors: str, wrong: dict[str, float] | None = None) -> tuple[Simulator, Daemon]:
+        """`wrong`: by which the focal length of a sensor is configured too long."""
         one = DEMO["sensors"][0]
         world = {**DEMO, "sensors": [{**one, "id": name, "position_m": PLACES[name], "rate_hz": RATE_HZ} for name in sensors]}
         path = self.folder / "several.json"
@@ -45,7 +46,11 @@ class SeveralSensors(CellTest):
         for index, name in enumerate(sensors):
             settings += [f"sensors.{name}.uri=calibrd-sim://{index}", f"sensors.{name}.fps={RATE_HZ}",
                          f"sensors.{name}.driver_directory={BUILD / 'lib/calibrd-sim-openni'}", f"sensors.{name}.latency=20ms"]
-            settings += [f"sensors.{name}.{key}={one['camera'][key]}" for key in ("fx", "fy", "cx", "cy", "distortion")]
+            camera = dict(one["camera"])
+            for key in ("fx", "fy"):
+                camera[key] *= (wrong or {}).get(name, 1.0)
+            settings += [f"sensors.{name}.{key}={camera[key]}" for key in ("fx", "fy", "cx", "cy", "distortion")]
+        self.settings = settings
         self.programs.append(daemon := Daemon(self.folder, simulator.controller_port, simulator.world_file, *settings))
         simulator.tell("PUT", "/motion", mode="run", seed=11, count=12, speed_rad_s=1.5, hold_s=1.2)
         return simulator, daemon.wait_ready()
@@ -151,6 +156,36 @@ class SeveralSensors(CellTest):
         cloud = self.cloud(daemon, "true")
         self.assertEqual(set(cloud.of), {0, 1, 2})
         self.expect_one_bench(cloud)
+
+    def test_one_with_wrong_intrinsics_is_contradicted_by_the_other_though_its_own_views_cannot_tell(self):
+        _, daemon = self.start(SENSOR, "left", wrong={"left": 1.026})
+        started = call(daemon.port, "POST", "/api/v1/cell/calibrations", {"postures": 5}).json()["calibrations"]
+        ended = [daemon.wait_calibration(job["location"]) for job in started]
+        print([(job["sensor"], job["verdict"], job["result"]["sigma_position_m"],
+                [reason["text"] for reason in job["result"]["reasons"]]) for job in ended])
+        codes = [reason["code"] for job in ended for reason in job["result"]["reasons"]]
+        self.assertIn("sensors_disagree", codes)
+        valid = [daemon.json(f"/api/v1/sensors/{job['sensor']}/pose")["valid"] for job in ended]
+        self.assertEqual(sorted(valid), [False, True])
+
+    def test_a_served_pose_that_a_better_one_contradicts_is_served_no_longer_not_even_after_a_restart(self):
+        simulator, daemon = self.start(SENSOR, "left", wrong={"left": 1.026})
+        for name in ("left", SENSOR):
+            job, = call(daemon.port, "POST", "/api/v1/cell/calibrations", {"sensors": [name]}).json()["calibrations"]
+            ended = daemon.wait_calibration(job["location"])
+            self.assertEqual(ended["verdict"], "accepted", ended)
+        self.assertIn("sensors_disagree", [reason["code"] for reason in ended["result"]["reasons"]])
+        pose = daemon.json("/api/v1/sensors/left/pose")
+        self.assertEqual((pose["valid"], pose["state"]), (False, "unverified"))
+        self.assertIn("does not lie at the same place", pose["reason"])
+        self.assertTrue(daemon.json(f"/api/v1/sensors/{SENSOR}/pose")["valid"])
+
+        daemon.stop()
+        self.programs.append(daemon := Daemon(self.folder, simulator.controller_port, simulator.world_file, *self.settings,
+                                              "drift.healing=off"))
+        daemon.wait_ready()
+        wait_until("the other pose is valid again", lambda: daemon.json(f"/api/v1/sensors/{SENSOR}/pose")["valid"])
+        self.assertEqual(daemon.json("/api/v1/sensors/left/pose")["state"], "drifted")
 
 
 if __name__ == "__main__":
