@@ -41,14 +41,32 @@ json::object camera_json(const CameraModel& camera) {
           {"distortion", std::move(distortion)}};
 }
 
+json::value or_null(const std::optional<Seconds>& value) {
+  return value ? json::value(value->count()) : json::value(nullptr);
+}
+
+json::object time_offset_json(const TimeOffsetReport& offset) {
+  return {{"source", offset.applied ? "estimated" : "configured"},
+          {"estimating", offset.is_estimated},
+          {"applied", offset.applied},
+          {"value_s", or_null(offset.value)},
+          {"sigma_s", or_null(offset.sigma)},
+          {"jitter_s", or_null(offset.jitter)},
+          {"age_s", or_null(offset.age)},
+          {"reason", text_or_null(offset.reason)}};
+}
+
 json::object views_json(const ViewReport& views) {
   json::object refused;
   for (const auto& [code, count] : views.refused) refused[code] = count;
-  return {{"usable", views.usable},
-          {"code", views.code},
-          {"reason", text_or_null(views.reason)},
-          {"views", views.views},
-          {"frames_refused", std::move(refused)}};
+  return {
+      {"usable", views.usable},
+      {"code", views.code},
+      {"reason", text_or_null(views.reason)},
+      {"views", views.views},
+      {"moving_views", views.moving_views},
+      {"timing_error_m", views.timing_error_m ? json::value(*views.timing_error_m) : json::value(nullptr)},
+      {"frames_refused", std::move(refused)}};
 }
 
 json::value joints_json(const RobotReport& robot) {
@@ -62,6 +80,7 @@ json::value joints_json(const RobotReport& robot) {
                       {"stamp_ns", robot.joints->stamp.time_since_epoch() / std::chrono::nanoseconds(1)},
                       {"age_s", robot.joints_age.count()},
                       {"stale", robot.joints_stale},
+                      {"frozen", robot.joints_frozen},
                       {"still", robot.still},
                       {"by_name", std::move(joints)}};
 }
@@ -102,6 +121,7 @@ json::object sensor_json(const SensorReport& sensor) {
           {"has_image", sensor.has_image},
           {"camera", camera_json(sensor.camera)},
           {"views", views_json(sensor.views)},
+          {"time_offset", time_offset_json(sensor.time_offset)},
           {"pose", {{"state", name_of(sensor.pose_state)}, {"valid", sensor.pose_valid}}},
           {"job", text_or_null(sensor.job)}};
 }

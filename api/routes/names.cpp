@@ -40,6 +40,22 @@ const char* name_of(JobStatus status) {
   return "failed";
 }
 
+const char* name_of(MotionStatus status) {
+  switch (status) {
+    case MotionStatus::running:
+      return "running";
+    case MotionStatus::stopping:
+      return "stopping";
+    case MotionStatus::succeeded:
+      return "succeeded";
+    case MotionStatus::stopped:
+      return "stopped";
+    case MotionStatus::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
 std::string rfc3339(SystemTime time) {
   const auto ms = std::chrono::floor<std::chrono::milliseconds>(time);
   const auto seconds = std::chrono::floor<std::chrono::seconds>(ms);

@@ -84,7 +84,21 @@ struct ViewReport {
   std::string code;     ///< "usable", "moving", "joints_stale", …
   std::string reason;   ///< in words, and what to do; empty while usable
   std::uint64_t views = 0;
+  std::uint64_t moving_views = 0;  ///< of them of a moving robot
+  /// How far (m) any point of the robot may be from where the joints put it in the newest judged frame (1
+  /// sigma): 0 while it stands still, nothing where it is not known.
+  std::optional<double> timing_error_m;
   std::vector<std::pair<std::string, std::uint64_t>> refused;  ///< code and number of frames, since start
+};
+
+/// How much later a sensor's frames are stamped than the robot's joints, beyond the configured latencies.
+struct TimeOffsetReport {
+  bool is_estimated = false;  ///< false: sensors.ID.time_offset is off
+  bool applied = false;       ///< frames are paired with joints by it
+  std::optional<Seconds> value, sigma;
+  std::optional<Seconds> jitter;  ///< of single frames
+  std::optional<Seconds> age;     ///< since it changed last
+  std::string reason;             ///< why it is not applied, and what to do; empty while it is
 };
 
 struct SensorReport {
@@ -99,6 +113,7 @@ struct SensorReport {
   CameraModel camera;
   bool has_image = false;  ///< the newest frame came with an image
   ViewReport views;
+  TimeOffsetReport time_offset;
   PoseState pose_state = PoseState::uncalibrated;
   bool pose_valid = false;
   std::string job;
@@ -128,6 +143,7 @@ struct RobotReport {
   std::optional<JointState> joints;  ///< newest; nothing before the first
   Seconds joints_age{0};
   bool joints_stale = true;
+  bool joints_frozen = false;  ///< they repeat while the controller says that the robot moves
   bool still = false;
   std::optional<ControllerReport> controller;  ///< nothing before its first status
   std::vector<LinkPlacement> links;            ///< at `joints`; empty without them

@@ -15,6 +15,7 @@ struct View {
   std::optional<GreyImage> image;           ///< same pixel grid as the depth
   std::vector<double> joint_positions_rad;  ///< RobotModel::position_names() order
   double stamp_s = 0;
+  bool is_moving = false;  ///< the robot moved, or may have: its joints are right as far as the time is known
 };
 
 }  // namespace calibrd

@@ -60,6 +60,21 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
   fit_planes();
 }
 
+void BackgroundMap::recall(std::span<const float> depth_m) {
+  if (depth_m.size() != cells_.size()) return;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    cells_[i].depth_m = depth_m[i];
+    cells_[i].frames = kMostFrames;  // it is there to be compared with, not to be added to
+  }
+  fit_planes();
+}
+
+std::vector<float> BackgroundMap::depths_m() const {
+  std::vector<float> depths;
+  for (const BackgroundCell& cell : cells_) depths.push_back(cell.depth_m);
+  return depths;
+}
+
 void BackgroundMap::relearn(std::span<const float> depth_m, std::span<const float> frames,
                             std::span<const std::uint8_t> chosen) {
   for (std::size_t i = 0; i < cells_.size(); ++i) {

@@ -36,6 +36,11 @@ class BackgroundMap {
   /// views agree on, where the robot is not; `robot` holds one coarse mask per view (see RobotMask).
   void learn(std::span<const View> views, std::span<const std::vector<std::uint8_t>> robot);
 
+  /// Takes depths that were learnt before: one per cell, m, 0 = nothing known. Others are ignored.
+  void recall(std::span<const float> depth_m);
+  /// What recall() takes.
+  std::vector<float> depths_m() const;
+
   /// Takes `depth_m`, each the mean of `frames` frames, for the `chosen` cells (row-major, 1 = chosen).
   void relearn(std::span<const float> depth_m, std::span<const float> frames,
                std::span<const std::uint8_t> chosen);
@@ -78,8 +83,10 @@ class RobotMask {
   /// `positions`: of the frame's moment, position_names() order. 1 = robot, or so near its outline that it
   /// may be.
   const std::vector<std::uint8_t>& at(std::span<const double> positions, const Pose& T_base_sensor);
-  /// The robot at the joints of the last at().
+  /// The robot at the joints of the last at() ...
   const VirtualCell& cell() const { return cell_; }
+  /// ... and what of it the cells see.
+  const VirtualMeasurement& prediction() const { return prediction_; }
 
  private:
   VirtualCell cell_;

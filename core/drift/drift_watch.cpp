@@ -63,6 +63,15 @@ void DriftWatch::learn(std::span<const View> views) {
   std::vector<std::vector<std::uint8_t>> masks;
   for (const View& view : views) masks.push_back(robot_.at(view.joint_positions_rad, T_base_sensor_));
   map_.learn(views, masks);
+  start_over();
+}
+
+void DriftWatch::recall(std::span<const float> depth_m) {
+  map_.recall(depth_m);
+  start_over();
+}
+
+void DriftWatch::start_over() {
   matcher_.start_over();
   scene_.reset();
   test_.reset();

@@ -51,6 +51,8 @@ class DriftWatch {
   /// The background as the sensor saw it where the pose holds: views it stood still for, of a robot in
   /// different postures (one shows nothing behind the robot).
   void learn(std::span<const View> views);
+  /// The background as it was learnt once before, for this very pose: see BackgroundMap::recall().
+  void recall(std::span<const float> depth_m);
   bool has_background() const { return !map_.is_empty(); }
 
   /// The next frame; joint_positions_rad empty when they are not known.
@@ -75,6 +77,7 @@ class DriftWatch {
   const std::optional<Innovation>& innovation() const { return innovation_; }
 
  private:
+  void start_over();
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
   void follow_offset(const BackgroundObservation& observation, double now_s);

@@ -135,19 +135,20 @@ bool PostureRules::differs_from_seen(const std::vector<double>& posture) const {
   });
 }
 
-bool PostureRules::within_space(const std::vector<PlacedBody>& bodies) const {
+const char* PostureRules::space_objection(const std::vector<PlacedBody>& bodies) const {
   const float margin_m = spacing_m_ / 2;  // what lies between the sampled points
   const auto least_range_m = static_cast<float>(settings_.min_range_m);
   for (std::size_t b = 1; b < bodies.size(); ++b) {  // 0 never moves
     if (bodies[b].points.empty()) continue;
-    if (bodies[b].box.min().z() - margin_m < static_cast<float>(settings_.min_height_m)) return false;
+    if (bodies[b].box.min().z() - margin_m < static_cast<float>(settings_.min_height_m))
+      return "a link would be below the table";
     if (settings_.workspace_base && !settings_.workspace_base->cast<float>().contains(bodies[b].box))
-      return false;
+      return "a link would leave the workspace";
     if (bodies[b].box.exteriorDistance(sensor_base_) > least_range_m) continue;
     for (const auto& point : bodies[b].points)
-      if ((point - sensor_base_).norm() < least_range_m) return false;
+      if ((point - sensor_base_).norm() < least_range_m) return "a link would come too near to the sensor";
   }
-  return true;
+  return nullptr;
 }
 
 bool PostureRules::apart(const std::vector<PlacedBody>& bodies) const {
@@ -159,10 +160,12 @@ bool PostureRules::apart(const std::vector<PlacedBody>& bodies) const {
   });
 }
 
-bool PostureRules::allow(const std::vector<double>& posture) const {
-  if (!differs_from_seen(posture) || !within_limits(posture)) return false;
+const char* PostureRules::objection(const std::vector<double>& posture) const {
+  if (!differs_from_seen(posture)) return "it is too like a posture seen";
+  if (!within_limits(posture)) return "a joint that follows others would be beyond its limits";
   const auto bodies = place(posture);
-  return within_space(bodies) && apart(bodies);
+  if (const char* against = space_objection(bodies)) return against;
+  return apart(bodies) ? nullptr : "two links would come too near to each other";
 }
 
 }  // namespace calibrd

@@ -23,7 +23,10 @@ class PostureRules {
   PostureRules(const RobotModel& robot, const Pose& T_base_sensor,
                std::span<const std::vector<double>> seen_postures, const PlanningSettings& settings);
 
-  bool allow(const std::vector<double>& posture) const;
+  bool allow(const std::vector<double>& posture) const { return objection(posture) == nullptr; }
+
+  /// What speaks against it, in words ("a link would be below the table"); null: nothing.
+  const char* objection(const std::vector<double>& posture) const;
 
  private:
   /// Links that fixed joints hold together.
@@ -45,7 +48,7 @@ class PostureRules {
   std::vector<PlacedBody> place(const std::vector<double>& posture) const;
   bool within_limits(const std::vector<double>& posture) const;
   bool differs_from_seen(const std::vector<double>& posture) const;
-  bool within_space(const std::vector<PlacedBody>& bodies) const;
+  const char* space_objection(const std::vector<PlacedBody>& bodies) const;
   bool apart(const std::vector<PlacedBody>& bodies) const;
 
   const RobotModel& robot_;

@@ -3,6 +3,7 @@
 #include "core/robot/joint_mapping.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace calibrd {
@@ -27,6 +28,21 @@ Result<std::vector<double>> JointMapping::positions(std::span<const double> cont
 
 Result<std::vector<double>> JointMapping::velocities(std::span<const double> controller) const {
   return apply(controller, 0);
+}
+
+Result<std::vector<double>> JointMapping::controller_values(std::span<const double> joints,
+                                                            std::vector<double> controller) const {
+  if (controller.size() < values_read_ || joints.size() != rows_.size())
+    return Error{JointMappingError::too_few_values,
+                 std::to_string(joints.size()) + " joints, " + std::to_string(controller.size()) + " values"};
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    const double factor = row.terms.front().factor;
+    if (row.terms.size() != 1 || std::abs(factor) != 1)
+      return Error{JointMappingError::not_invertible, "joint " + std::to_string(i + 1)};
+    controller[row.terms.front().axis] = (joints[i] - row.offset) / factor;
+  }
+  return controller;
 }
 
 std::vector<int> JointMapping::axes() const {

@@ -55,6 +55,12 @@ class JointMapping {
   /// The same for velocities: offsets do not count.
   Result<std::vector<double>> velocities(std::span<const double> controller) const;
 
+  /// The way back, for controllers whose axes turn as the model's joints do, but for sign and offset: what
+  /// the controller is at when the model is at `joints`. Values that belong to no joint stay as in
+  /// `controller`. Errors: JointMappingError::too_few_values, not_invertible (an axis is scaled or coupled).
+  Result<std::vector<double>> controller_values(std::span<const double> joints,
+                                                std::vector<double> controller) const;
+
   /// Number of joints of the model.
   std::size_t size() const { return rows_.size(); }
 

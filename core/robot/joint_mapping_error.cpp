@@ -34,6 +34,9 @@ const char* text(JointMappingError code) {
       return "this is the order of the teach pendant (S L U R B T E), but the wire carries S L E U R B T; "
              "list the "
              "joints from base to tool, the elbow axis E third";
+    case JointMappingError::not_invertible:
+      return "its controller axis is scaled or coupled, so the robot cannot be commanded; switch "
+             "motion.enabled off";
   }
   return "unknown joint mapping error";
 }

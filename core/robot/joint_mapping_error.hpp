@@ -17,6 +17,7 @@ enum class JointMappingError {
   too_few_values,
   wrong_joint_count,
   pendant_order,
+  not_invertible,
 };
 
 const std::error_category& joint_mapping_category();

@@ -13,16 +13,17 @@ using enum RobotLinkError;
 
 constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
     {host_missing, "no controller is named: set robot.host to its address or name"},
+    {driver_unknown, "no such driver: set robot.driver to one that docs/controllers.md names"},
     {port_out_of_range,
-     "not a TCP port: set robot.port to the controller's state port (MotoROS 50241, others 11002)"},
+     "not a TCP port: set robot.port to the controller's state port (MotoROS 50241, FANUC and ABB "
+     "11002, Universal Robots 30004)"},
     {port_commands_the_robot,
-     "this port commands the robot and connecting would cut off whoever controls it: set robot.port to the "
-     "state "
-     "port (MotoROS 50241, others 11002)"},
+     "this port commands the robot and connecting could disturb whoever controls it: set robot.port to "
+     "the state port (MotoROS 50241, FANUC and ABB 11002, Universal Robots 30004)"},
     {group_out_of_range,
      "a controller has groups 0 to 3: set robot.group to one of them (the first robot is 0)"},
     {joint_count_out_of_range,
-     "the protocol carries 1 to 10 joints: set robot.joint_count to the axes of the group"},
+     "simple_message carries 1 to 10 joints, RTDE 1 to 6: set robot.joint_count to the axes of the robot"},
     {real_bytes_invalid,
      "reals take 4 or 8 bytes: set robot.real_bytes to 4 unless the controller is known to send 8"},
     {limit_invalid, "a limit must be a positive number: correct or remove it"},
@@ -35,9 +36,8 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
     {stopped, "calibrd has stopped reading the controller; start it again"},
     {host_unknown, "no such host: check robot.host, or use the controller's IP address"},
     {refused,
-     "the controller refuses the connection: its state port opens only when its driver (MotoROS) runs and "
-     "boot "
-     "alarms are cleared; check the pendant, then robot.port"},
+     "the controller refuses the connection: its state port opens only when its driver (MotoROS, "
+     "ros_state, RTDE) runs and boot alarms are cleared; check the pendant, then robot.port"},
     {unreachable, "no route to the controller: check cable, network settings and robot.host"},
     {no_answer, "the controller does not answer: check that it is switched on, its cable, and robot.host"},
     {connect_failed, "cannot connect: check the network of this machine and robot.host"},
@@ -47,17 +47,16 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
      "state port"},
     {connection_failed, "the connection broke; reconnecting. When this repeats, check cable and switch"},
     {evicted,
-     "the controller closes the connection soon after accepting it: other clients fight for its few state "
-     "slots "
-     "(MotoROS has 4). Close clients that are not needed; trying again only after a long pause"},
+     "the controller closes the connection soon after accepting it: other clients fight for its few "
+     "state slots (MotoROS has 4). Close clients that are not needed; trying again only after a long "
+     "pause"},
     {silent,
-     "the controller sends nothing: reconnecting. Check that it is switched on, its cable, and that its "
-     "driver "
-     "(MotoROS) still runs"},
+     "the controller sends nothing: reconnecting. Check that it is switched on, its cable, that its "
+     "driver (MotoROS, ros_state, RTDE) still runs, and that no other client holds its only place "
+     "(FANUC, ABB)"},
     {held_up,
      "this computer was too busy to read the robot for seconds; joints of unknown age were dropped, "
-     "reconnecting. "
-     "Give calibrd more processor time"},
+     "reconnecting. Give calibrd more processor time"},
 
     {joints_missing,
      "status arrives but no joint positions: the controller cannot read its encoders. Check its alarms and "

@@ -9,6 +9,7 @@ namespace calibrd {
 enum class RobotLinkError {
   // Configuration
   host_missing = 1,
+  driver_unknown,
   port_out_of_range,
   port_commands_the_robot,
   group_out_of_range,

@@ -94,7 +94,12 @@ void SimpleMessageCodec::take_joints(const sm::JointFeedback& feedback, Kind kin
     output.joints_problem = Error{RobotLinkError::no_positions, {}};
     return;
   }
-  if (kind < best_kind_ || !inside_ranges(feedback.positions, output)) return;
+  if (kind < best_kind_) return;
+  if (auto outside = outside_ranges(feedback.positions, settings_.joint_ranges)) {
+    ++output.rejected_values;
+    output.joints_problem = std::move(outside);
+    return;
+  }
   best_kind_ = kind;
   ++output.joint_messages;
   ControllerJoints joints;
@@ -106,20 +111,6 @@ void SimpleMessageCodec::take_joints(const sm::JointFeedback& feedback, Kind kin
     joints.velocities_rad.assign(feedback.velocities.begin(), feedback.velocities.begin() + count);
   }
   output.joints = std::move(joints);
-}
-
-bool SimpleMessageCodec::inside_ranges(const sm::JointValues& positions, CodecOutput& output) const {
-  for (std::size_t i = 0; i < settings_.joint_ranges.size(); ++i) {
-    const JointRange& range = settings_.joint_ranges[i];
-    if (positions[i] >= range.lower && positions[i] <= range.upper) continue;
-    ++output.rejected_values;
-    output.joints_problem =
-        Error{RobotLinkError::outside_joint_range,
-              "joint " + std::to_string(i + 1) + " at " + std::to_string(positions[i]) + ", allowed " +
-                  std::to_string(range.lower) + " to " + std::to_string(range.upper)};
-    return false;
-  }
-  return true;
 }
 
 ControllerStatus SimpleMessageCodec::status_from(const sm::RobotStatus& status) const {

@@ -4,16 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "drivers/robot/joint_limits.hpp"
 #include "drivers/robot/simple_message/decode.hpp"
 #include "drivers/robot/simple_message/framer.hpp"
 #include "drivers/robot/state_codec.hpp"
 
 namespace calibrd {
-
-/// Where one joint can be, rad or m. Give the model's limits plus a margin.
-struct JointRange {
-  double lower = 0, upper = 0;
-};
 
 struct SimpleMessageSettings {
   simple_message::WireFormat format;
@@ -40,7 +36,6 @@ class SimpleMessageCodec : public StateCodec {
   void take_frame(std::span<const std::byte> frame, CodecOutput& output);
   void take(const simple_message::Message& message, CodecOutput& output);
   void take_joints(const simple_message::JointFeedback& feedback, Kind kind, CodecOutput& output);
-  bool inside_ranges(const simple_message::JointValues& positions, CodecOutput& output) const;
   ControllerStatus status_from(const simple_message::RobotStatus& status) const;
 
   SimpleMessageSettings settings_;

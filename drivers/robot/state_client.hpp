@@ -2,40 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <boost/asio/any_io_executor.hpp>
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/base/result.hpp"
 #include "drivers/robot/joint_source.hpp"
-#include "drivers/robot/link_machine.hpp"
-#include "drivers/robot/simple_message_codec.hpp"
+#include "drivers/robot/state_client_settings.hpp"
 
 namespace calibrd {
 
 class LinkShell;
 
-/// The [robot] section of the configuration, as docs/controllers.md explains it.
-struct StateClientSettings {
-  std::string host;  ///< address or name
-  int port = 50241;  ///< the state port; ports that command a robot are refused
-  simple_message::ByteOrder byte_order = simple_message::ByteOrder::big;
-  int real_bytes = 4;                    ///< 4 or 8
-  int group = 0;                         ///< from 0
-  int joint_count = 10;                  ///< axes of the group; the protocol always carries ten
-  double max_position = 100;             ///< rad or m: beyond it a value is damage
-  double max_velocity = 100;             ///< per second
-  std::vector<JointRange> joint_ranges;  ///< optional, per joint in wire order
-  LinkSettings link;
-};
-
-/// Every key is usable. Errors: RobotLinkError, detail names the key.
-Status check(const StateClientSettings& settings);
-
-/// Reads joints and status of one controller over the simple_message protocol and keeps the link up: one
-/// connection at a time, to the state port only, nothing is ever sent. Linux. Thread-safe. stop() or destroy
-/// it before the executor's context ends.
+/// Reads joints and status of one controller, as settings.driver says, and keeps the link up: one connection
+/// at a time, to the state port only. Nothing that could command the robot is ever sent: over simple_message
+/// no byte, over RTDE the requests to be told its state. Linux. Thread-safe. stop() or destroy it before the
+/// executor's context ends.
 class StateClient {
  public:
   /// Checks the settings, opens nothing. `events` are called on `executor`, one at a time.

@@ -19,7 +19,9 @@ struct CodecOutput {
   std::optional<ControllerJoints> joints;
   std::optional<ControllerStatus> status;  ///< the newest
   std::uint64_t joint_messages = 0;        ///< usable joint messages in the piece
-  std::uint64_t messages = 0;              ///< well-formed messages of any kind: the peer is alive
+  /// Well-formed messages that show the peer at work. What it may go on saying while it does not work (texts
+  /// beside a handshake that never ends) is not counted: the link must be able to call it silent.
+  std::uint64_t messages = 0;
   std::uint64_t rejected_values = 0;
   std::uint64_t other_group = 0;
   std::uint64_t skipped = 0;            ///< messages of other kinds

@@ -57,6 +57,7 @@ struct RobotConfig {
   double max_position = 100;
   double max_velocity = 100;
   std::vector<std::array<double, 2>> joint_ranges;
+  bool trust_in_motion = true;
   LinkConfig link;
   std::map<std::string, JointConfig> joints;
 };
@@ -73,6 +74,7 @@ struct SensorConfig {
   CameraModel camera{.width = 512, .height = 424};
   int depth_unit_um = 1000;
   Duration latency{0};
+  std::string time_offset = "estimate";
   std::optional<Pose> guess_T_base_sensor;
   std::map<std::string, std::array<double, 3>> workspace;  ///< name -> m, base frame
 };
@@ -100,6 +102,22 @@ struct CalibrationConfig {
   Duration settle_time{300};
   int frames_per_posture = 5;
   Duration collect_timeout{600'000};
+  std::string views = "still";
+};
+
+struct MotionRouteConfig {
+  std::vector<std::vector<double>> postures_deg;  ///< the model's order
+};
+
+struct MotionConfig {
+  bool enabled = false;
+  int port = 50240;
+  double max_speed_deg_s = 5;
+  double max_acceleration_deg_s2 = 10;
+  Duration hold{2000};
+  double path_tolerance_deg = 1;
+  double table_height_m = 0;
+  std::map<std::string, MotionRouteConfig> routes;
 };
 
 struct StorageConfig {
@@ -119,6 +137,7 @@ struct Config {
   PoseConfig pose;
   DriftConfig drift;
   CalibrationConfig calibration;
+  MotionConfig motion;
   StorageConfig storage;
   LogConfig log;
 };

@@ -27,6 +27,10 @@ std::vector<std::string> config_warnings(const Config& config) {
       warnings.push_back("sensors." + id + ": distortion is all zero: this looks" + kWhy +
                          " (right only where the device removes the distortion itself)");
   }
+  const bool is_open = config.server.address != "127.0.0.1" && config.server.address != "::1";
+  if (config.motion.enabled && is_open)
+    warnings.push_back("motion.enabled with server.address = \"" + config.server.address +
+                       "\": the HTTP interface has no users, so whoever reaches the port can move the robot");
   return warnings;
 }
 

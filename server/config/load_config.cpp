@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "core/robot/nearest_name.hpp"
+#include "drivers/robot/robot_drivers.hpp"
 #include "server/config/config_error.hpp"
 #include "server/config/setting.hpp"
 
@@ -67,6 +68,7 @@ Status enter_section(const RawEntry& entry, Config& config) {
     return unknown_key(entry);
   if (path.size() == 2 && path[0] == "sensors") config.sensors[path[1]];
   if (path.size() == 3 && path[1] == "joints") config.robot.joints[path[2]];
+  if (path.size() == 3 && path[1] == "routes") config.motion.routes[path[2]];
   return Done{};
 }
 
@@ -95,6 +97,7 @@ void restore_case(std::vector<std::string>& path, const Config& config) {
   };
   if (path.size() > 1 && path[0] == "sensors") restore(path[1], config.sensors);
   if (path.size() > 2 && path[0] == "robot" && path[1] == "joints") restore(path[2], config.robot.joints);
+  if (path.size() > 2 && path[0] == "motion" && path[1] == "routes") restore(path[2], config.motion.routes);
 }
 
 /// The entry of "CALIBRD_SECTION__KEY=value"; nothing for any other variable.
@@ -121,6 +124,15 @@ Result<RawEntry> override_entry(const std::string& text) {
   if (equals == std::string::npos || equals == 0) return Error{ConfigError::bad_override, "--set " + text};
   const auto key = text.substr(0, equals);
   return RawEntry{split_path(key), parse_text_value(text.substr(equals + 1)), "--set " + key};
+}
+
+/// What depends on the driver, where nobody has set it.
+void complete_robot(LoadedConfig& loaded) {
+  RobotConfig& robot = loaded.config.robot;
+  const RobotDriver* driver = find_robot_driver(robot.driver);
+  if (driver == nullptr) return;
+  if (!loaded.origins.contains("robot.port")) robot.port = driver->default_port;
+  if (!loaded.origins.contains("robot.joint_count")) robot.joint_count = driver->max_joints;
 }
 
 Status check_required(const Config& config) {
@@ -174,6 +186,7 @@ Result<LoadedConfig> load_config(const ConfigSources& sources) {
     if (!entry) return entry.error();
     if (auto status = apply(*entry, loaded); !status) return status.error();
   }
+  complete_robot(loaded);
   if (auto status = check_whole(loaded.config); !status) return status.error();
   return loaded;
 }

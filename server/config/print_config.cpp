@@ -24,7 +24,7 @@ A key that does not exist, or a value of the wrong type or range, stops the star
 the line and the nearest name. `calibrd serve --check-config` only checks. `--print-config` prints the configuration in
 effect, and where each value came from. Relative paths in a file are relative to that file.
 
-`NAME` is a joint of the robot model, `ID` a name of your choice for a sensor; a table may be given for any number of them.
+`NAME` is a joint of the robot model (of `motion.routes` a name of your choice), `ID` a name of your choice for a sensor; a table may be given for any number of them.
 This page is generated: `calibrd config-reference > docs/configuration.md`.
 )";
 

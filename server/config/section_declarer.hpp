@@ -51,5 +51,6 @@ class SectionDeclarer {
 
 // Parts of the table in files of their own.
 void declare_drift(std::vector<Setting>& table);
+void declare_motion(std::vector<Setting>& table);
 
 }  // namespace calibrd

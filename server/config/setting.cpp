@@ -33,11 +33,18 @@ std::vector<Names> workspace_names(const Config& config) {
   return all;
 }
 
+std::vector<Names> route_names(const Config& config) {
+  std::vector<Names> all;
+  for (const auto& [name, unused] : config.motion.routes) all.push_back({name});
+  return all;
+}
+
 }  // namespace
 
 std::vector<Names> instances(const Setting& setting, const Config& config) {
   const auto stars = std::count(setting.path.begin(), setting.path.end(), "*");
   if (stars == 0) return {Names{}};
+  if (setting.path.front() == "motion") return route_names(config);
   if (setting.path.front() == "sensors") return stars == 1 ? sensor_names(config) : workspace_names(config);
   return stars == 1 ? joint_names(config) : coupling_names(config);
 }

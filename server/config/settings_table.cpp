@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+#include "drivers/robot/robot_drivers.hpp"
 #include "server/config/section_declarer.hpp"
 
 namespace calibrd {
@@ -28,24 +29,30 @@ void declare_robot(std::vector<Setting>& table) {
       "Link whose frame is the base of every published pose. Empty: the URDF's root.");
   key("controller_frame", &RobotConfig::controller_frame, text(), "",
       "Link whose frame the controller calls its base; needed for vendors' pose formats.");
-  key("driver", &RobotConfig::driver, one_of({"simple_message"}), "",
-      "How joints are read from the controller.");
+  key("driver", &RobotConfig::driver, one_of(robot_driver_names()), "",
+      "How joints are read from the controller: docs/controllers.md names the makes.");
   key("host", &RobotConfig::host, text(), "", "Name or address of the robot controller.").required = true;
   key("port", &RobotConfig::port, integer(1, 65535), "",
-      "State port of the controller (MotoROS 50241; FANUC and ABB 11002).");
+      "State port of the controller (MotoROS 50241; FANUC and ABB 11002). ur_rtde: 30004 when it is not "
+      "set.");
   key("byte_order", &RobotConfig::byte_order, one_of({"big", "little"}), "",
-      "Byte order of the controller (FS100 big; DX100, DX200, YRC1000 little).");
-  key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0.");
+      "Byte order of the controller (FS100 and FANUC big; DX100, DX200, YRC1000 and ABB little). "
+      "simple_message.");
+  key("group", &RobotConfig::group, integer(0, 3), "", "Motion group to follow, from 0. simple_message.");
   key("joint_count", &RobotConfig::joint_count, integer(1, 10), "",
-      "How many values of a message are taken, from the first.");
+      "How many values of a message are taken, from the first. ur_rtde: 6 when it is not set.");
   key("real_bytes", &RobotConfig::real_bytes, one_of_numbers({4, 8}), "",
-      "Size of the protocol's reals; 8 only for servers built so.");
+      "Size of the protocol's reals; 8 only for servers built so. simple_message.");
   key("max_position", &RobotConfig::max_position, positive_real(), "rad, m",
       "A message with a position beyond it is damage and is dropped.");
   key("max_velocity", &RobotConfig::max_velocity, positive_real(), "rad/s, m/s",
       "A message with a velocity beyond it is damage and is dropped.");
   key("joint_ranges", &RobotConfig::joint_ranges, ranges(), "rad, m",
       "Where each joint can be, [lower, upper] in wire order; a message outside is dropped.");
+  key("trust_in_motion", &RobotConfig::trust_in_motion, flag(), "",
+      "A robot whose controller says that it is in motion gives no view of a still robot, and joints that "
+      "repeat "
+      "meanwhile are frozen. false: for controllers that say so while the robot stands.");
 }
 
 void declare_link(std::vector<Setting>& table) {
@@ -141,8 +148,17 @@ void declare_sensors(std::vector<Setting>& table) {
       "k1, k2, p1, p2, k3 as OpenCV defines them. Left out it moved the pose by 5 mm, unseen.");
   key("depth_unit_um", &SensorConfig::depth_unit_um, one_of_numbers({1000, 100}), "µm",
       "Unit of the depth values to ask the device for; the other one is taken where it is not offered.");
+}
+
+void declare_sensors_time_and_place(std::vector<Setting>& table) {
+  SectionDeclarer<SensorConfig> key(
+      table, {"sensors", "*"}, [](Config& c, const Names& n) -> SensorConfig& { return c.sensors[n[0]]; });
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
+  key("time_offset", &SensorConfig::time_offset, one_of({"estimate", "off"}), "",
+      "estimate: how much later frames are stamped than joints, beyond both latencies, is found from the "
+      "robot's "
+      "motion once the sensor is calibrated, and applied. off: the latencies are taken for true.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
       "Rough T_base_sensor; only makes the first calibration faster.");
 }
@@ -194,6 +210,10 @@ void declare_calibration(std::vector<Setting>& table) {
       "Frames averaged for each posture.");
   key("collect_timeout", &CalibrationConfig::collect_timeout, duration(1s, 24h), "",
       "A calibration that has not seen its postures after this time fails.");
+  key("views", &CalibrationConfig::views, one_of({"still", "still_or_timed"}), "",
+      "still_or_timed: frames of a moving robot are used as well, where the time offset is known so well "
+      "that no "
+      "point of it is farther than 0.3 mm from where the joints put it.");
 }
 
 void declare_rest(std::vector<Setting>& table) {
@@ -216,10 +236,12 @@ std::vector<Setting> build_table() {
   declare_joints(table);
   declare_coupling(table);
   declare_sensors(table);
+  declare_sensors_time_and_place(table);
   declare_workspace(table);
   declare_pose(table);
   declare_drift(table);
   declare_calibration(table);
+  declare_motion(table);
   declare_rest(table);
   return table;
 }

@@ -65,6 +65,7 @@ api::HttpServerSettings http_settings(const Config& config) {
 
 StateClientSettings link_settings(const RobotConfig& robot) {
   StateClientSettings settings;
+  settings.driver = robot.driver;
   settings.host = robot.host;
   settings.port = robot.port;
   settings.byte_order =
@@ -78,6 +79,23 @@ StateClientSettings link_settings(const RobotConfig& robot) {
   settings.link = {robot.link.stale_after,   robot.link.reconnect_after, robot.link.connect_timeout,
                    robot.link.backoff_first, robot.link.backoff_cap,     robot.link.eviction_within,
                    robot.link.eviction_pause};
+  return settings;
+}
+
+MotionClientSettings motion_client_settings(const Config& config) {
+  const auto link = link_settings(config.robot);
+  MotionClientSettings settings;
+  settings.host = link.host;
+  settings.port = config.motion.port;
+  settings.state_port = link.port;
+  settings.motion.format = {link.byte_order, static_cast<std::size_t>(link.real_bytes)};
+  settings.motion.group = link.group;
+  settings.motion.limits = {config.motion.max_speed_deg_s * kRadPerDeg,
+                            config.motion.max_acceleration_deg_s2 * kRadPerDeg};
+  settings.motion.path.joint_rad = config.motion.path_tolerance_deg * kRadPerDeg;
+  settings.motion.hold = config.motion.hold;
+  settings.motion.connect_timeout = link.link.connect_timeout;
+  settings.watch.stale_after = link.link.stale_after;
   return settings;
 }
 
@@ -97,8 +115,22 @@ SensorProcessSettings sensor_settings(const std::string& id, const SensorConfig&
   return settings;
 }
 
+RobotMotionSettings motion_settings(const MotionConfig& motion) {
+  RobotMotionSettings settings;
+  settings.enabled = motion.enabled;
+  settings.table_height_m = motion.table_height_m;
+  for (const auto& [name, route] : motion.routes) {
+    auto postures = route.postures_deg;
+    for (auto& posture : postures)
+      for (double& angle : posture) angle *= kRadPerDeg;
+    settings.routes_rad[name] = std::move(postures);
+  }
+  return settings;
+}
+
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
   SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}, sensor.mirror};
+  setup.estimates_time_offset = sensor.time_offset == "estimate";
   for (const auto& [name, p] : sensor.workspace) setup.workspace.push_back({name, {p[0], p[1], p[2]}});
   return setup;
 }
@@ -124,6 +156,9 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.gate.stale_after = config.robot.link.stale_after;
   settings.gate.settle_time = config.calibration.settle_time;
   settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
+  settings.gate.trust_in_motion = config.robot.trust_in_motion;
+  settings.gate.timed_views = true;  // also for checks, and for healing
+  settings.jobs.collector.moving_views = config.calibration.views == "still_or_timed";
   settings.watch.max_unverified = config.pose.max_unverified;
   settings.watch.check_period = config.pose.check_period;
   settings.healing.mode = healing_mode(config.drift.healing);
@@ -134,6 +169,7 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.jobs.collector.min_distance_rad = config.calibration.min_posture_distance_deg * kRadPerDeg;
   settings.jobs.collector.frames_per_posture = config.calibration.frames_per_posture;
   settings.jobs.collect_timeout = config.calibration.collect_timeout;
+  settings.motion = motion_settings(config.motion);
   return settings;
 }
 

@@ -11,6 +11,7 @@
 #include "drivers/sensor/sensor_process.hpp"
 #include "server/daemon/conversions.hpp"
 #include "server/daemon/event_log.hpp"
+#include "server/daemon/motion_link.hpp"
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
 #include "server/storage/calibration_store.hpp"
@@ -55,7 +56,9 @@ Status check_sensors(const Config& config) {
 Status check_config(const Config& config) {
   const auto model = load_model(config.robot);
   if (!model) return model.error();
-  if (const auto mapping = make_mapping(config, *model); !mapping) return mapping.error();
+  const auto mapping = make_mapping(config, *model);
+  if (!mapping) return mapping.error();
+  if (auto status = check_motion(config, *model, *mapping); !status) return status;
   if (auto status = check(link_settings(config.robot)); !status) return status;
   return check_sensors(config);
 }
@@ -65,6 +68,7 @@ struct Daemon::Parts {
   std::unique_ptr<CalibrationStore> store;
   std::unique_ptr<const RobotModel> model;
   std::unique_ptr<const VirtualCell> virtual_cell;
+  std::unique_ptr<MotionLink> motion;  // only where the robot may be moved
   std::unique_ptr<LiveCell> cell;
   std::unique_ptr<RobotLink> link;
   api::Router router;
@@ -81,17 +85,25 @@ struct Daemon::Parts {
   Status make_cell(const Config& config, const std::string& version) {
     auto mapping = make_mapping(config, *model);
     if (!mapping) return mapping.error();
+    if (auto status = check_motion(config, *model, *mapping); !status) return status;
     cell =
         std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell, *std::move(mapping),
                                    *store, core_estimator(*virtual_cell, drift_settings(config.drift)),
-                                   CellLog{log_calibration, log_pose, log_error});
+                                   CellLog{log_calibration, log_pose, log_error, log_motion});
     for (const auto& [id, sensor] : config.sensors)
       if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
     return Done{};
   }
 
   Status make_link(const Config& config) {
-    auto created = RobotLink::create(link_settings(config.robot), logged_link(cell->robot_link().events()));
+    auto events = logged_link(cell->robot_link().events());
+    if (config.motion.enabled) {
+      motion = std::make_unique<MotionLink>(motion_client_settings(config));
+      cell->robot_motions().set_mover(&motion->mover());
+      events = motion->heard(std::move(events));
+      spdlog::warn("motion.enabled: this daemon moves the robot when it is asked to");
+    }
+    auto created = RobotLink::create(link_settings(config.robot), std::move(events));
     if (!created) return created.error();
     link = *std::move(created);
     cell->robot_link().set_health_source([this] { return link->health(); });
@@ -137,6 +149,7 @@ Daemon::~Daemon() { stop(); }
 
 void Daemon::stop() {
   if (parts_->cell) parts_->cell->request_stop();
+  if (parts_->motion) parts_->motion->stop();
   if (parts_->http) parts_->http->stop(kHttpGrace);
   if (parts_->link) parts_->link->stop();
   parts_->http.reset();

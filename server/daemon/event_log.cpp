@@ -32,6 +32,10 @@ void log_calibration(const api::CalibrationReport& calibration) {
 
 void log_error(const std::string& message) { spdlog::error("{}", message); }
 
+void log_motion(const std::string& line, bool is_well) {
+  spdlog::log(is_well ? spdlog::level::info : spdlog::level::warn, "{}", line);
+}
+
 void log_pose(const api::PoseReport& pose) {
   if (pose.valid)
     spdlog::info("sensor {}: the pose of calibration {} is valid", pose.sensor_id,

@@ -73,7 +73,7 @@ Result<Cloud> CloudMaker::measured(const LiveSensor& sensor) const {
   const auto sighting = fresh_sighting(sensor);
   if (!sighting) return sighting.error();
   Cloud cloud;
-  cloud.frame_stamp_ns = nanoseconds((*sighting)->stamp);
+  cloud.frame_stamp_ns = nanoseconds((*sighting)->exposed);
   const auto& depth = (*sighting)->view.depth;
   for (int y = 0; y < depth.height; ++y)
     for (int x = 0; x < depth.width; ++x)
@@ -109,7 +109,7 @@ Result<Cloud> CloudMaker::residual(const LiveSensor& sensor, const Pose& T_base_
   const auto& camera = sensor.camera();
   measure(camera, view.joint_positions_rad, T_base_sensor);
   Cloud cloud;
-  cloud.frame_stamp_ns = nanoseconds((*sighting)->stamp);
+  cloud.frame_stamp_ns = nanoseconds((*sighting)->exposed);
   cloud.joint_stamp_ns = cloud.frame_stamp_ns;  // interpolated at the frame's time
   cloud.joint_positions_rad = view.joint_positions_rad;
   std::size_t pixel = 0;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "api/service/reports.hpp"
@@ -15,11 +17,19 @@ namespace calibrd {
 /// from the sensor's thread; the rest is safe to call from any.
 class DriftMonitor {
  public:
-  explicit DriftMonitor(std::unique_ptr<DriftWatch> watch) : watch_(std::move(watch)) {}
+  /// Where the background of a pose comes from: the views it was found from; or its depths as learnt from
+  /// them once (BackgroundMap::recall()). Neither: it is learnt from frames that pass a check.
+  struct Background {
+    std::vector<View> views;
+    std::vector<float> depth_m;
+  };
+  using OnLearnt = std::function<void(const std::string& calibration_id, const std::vector<float>& depth_m)>;
+  /// `on_learnt` hears, on the sensor's thread, of a background that was learnt from the views of a pose.
+  DriftMonitor(std::unique_ptr<DriftWatch> watch, OnLearnt on_learnt)
+      : watch_(std::move(watch)), on_learnt_(std::move(on_learnt)) {}
 
-  /// Another pose, from the next frame on. `views`: those it was found from, whose background is then known;
-  /// without any it is learnt from frames that pass a check.
-  void set_pose(const Pose& T_base_sensor, std::vector<View> views);
+  /// Another pose, from the next frame on.
+  void set_pose(const std::string& calibration_id, const Pose& T_base_sensor, Background background);
 
   /// The next frame; joint_positions_rad empty where they are not known.
   void add_frame(const View& frame);
@@ -35,25 +45,32 @@ class DriftMonitor {
   double depth_offset_change_m() const;
   /// Where a sensor that has moved is now, as far as the background tells.
   std::optional<Pose> T_base_sensor_seen() const;
+  /// The background as it was learnt for the pose that was set last; nothing while it is not known. What has
+  /// come since and stands for long is not in it.
+  std::shared_ptr<const BackgroundMap> background() const;
 
   api::DriftReport report() const;
 
  private:
   struct Order {
+    std::string calibration_id;
     Pose T_base_sensor;
-    std::vector<View> views;
+    Background background;
   };
   void take_order();
   void keep_for_background(const View& frame);
+  void show_background();
   void note(const DriftReport& report, double now_s);
 
   const std::unique_ptr<DriftWatch> watch_;  // the sensor's thread's own
-  std::vector<View> passed_;                 // frames to learn the background from; the thread's own
+  const OnLearnt on_learnt_;
+  std::vector<View> passed_;  // frames to learn the background from; the thread's own
 
   mutable std::mutex mutex_;  // guards what follows
   std::optional<Order> order_;
   bool has_pose_ = false;
   DriftReport newest_;
+  std::shared_ptr<const BackgroundMap> background_;
   bool in_place_ = false, wants_check_ = false;
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it

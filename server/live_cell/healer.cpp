@@ -11,6 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kBusyRetry = 500ms;  // another calibration of the sensor is under way
 constexpr auto kLongWait = 1h;
+constexpr int kMovesWithoutPause = 4;
 constexpr int kEagerAttempts = 2;  // the quick one and the full one follow each other at once
 
 }  // namespace
@@ -49,17 +50,22 @@ void Healer::on_pose(const api::PoseReport& pose) {
   if (drifted == patient.drifted) return;
   patient.drifted = drifted;
   patient.candidate.clear();
-  if (!drifted) return;
-  const auto now = Clock::now();
-  if (now - patient.last_attempt > settings_.calm_after) patient.attempts = 0;
-  // One that was healed a moment ago and is off again waits as after a failure: no flapping.
-  patient.due =
-      patient.attempts < kEagerAttempts ? now : patient.last_attempt + pause_after(patient.attempts);
+  if (drifted) plan(patient, Clock::now());
   changed_.notify_all();
 }
 
+void Healer::plan(Patient& patient, Clock::time_point now) const {
+  if (now - patient.last_move > settings_.calm_after) patient.moves = 0;
+  patient.last_move = now;
+  patient.attempts = 0;
+  ++patient.moves;
+  // A sensor that hangs loose would else be calibrated without end.
+  patient.due = patient.moves <= kMovesWithoutPause ? now : now + pause_after(patient.moves);
+}
+
 void Healer::on_calibration(const api::CalibrationReport& calibration) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !is_starting_; });  // it may be the one that is just being started
   const auto found = patients_.find(calibration.sensor_id);
   if (found == patients_.end() || found->second.calibration != calibration.id || !calibration.finished)
     return;
@@ -110,16 +116,18 @@ void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>&
     request.postures = settings_.postures;
     request.patience = settings_.patience;
   }
+  is_starting_ = true;
   lock.unlock();
   const auto started = start_(request);
   lock.lock();
+  is_starting_ = false;
+  changed_.notify_all();
   Patient& patient = patients_[sensor_id];
   if (!started) {
     patient.due = Clock::now() + kBusyRetry;
     return;
   }
   patient.calibration = started->id;
-  patient.last_attempt = Clock::now();
   ++patient.attempts;
 }
 

@@ -28,8 +28,8 @@ struct HealerSettings {
 };
 
 /// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, with all
-/// the postures a calibration asks for, then again after pauses that grow. A sensor that is knocked again and
-/// again is not calibrated without end. Safe to call from any thread.
+/// the postures a calibration asks for, then again after pauses that grow. A sensor that moves again and
+/// again is given pauses, too. Safe to call from any thread.
 class Healer {
  public:
   /// Starts a calibration of a sensor; may fail, because one is under way or the cell is stopping.
@@ -53,19 +53,21 @@ class Healer {
     bool drifted = false;
     std::string calibration;  // under way; empty: none
     std::string candidate;
-    int attempts = 0;
-    Clock::time_point last_attempt, due;
+    int attempts = 0;  ///< since it drifted
+    int moves = 0;     ///< since it was last calm
+    Clock::time_point last_move, due;
   };
   void run();
   void attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
   Clock::duration pause_after(int attempts) const;
+  void plan(Patient& patient, Clock::time_point now) const;
 
   const HealerSettings settings_;
   const Start start_;
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::map<std::string, Patient> patients_;
-  bool is_stopping_ = false;
+  bool is_starting_ = false, is_stopping_ = false;
   std::thread thread_;
 };
 

@@ -9,6 +9,7 @@ namespace calibrd {
 void JointHistory::add(JointState state) {
   if (!states_.empty()) {
     if (state.stamp <= states_.back().stamp) return;
+    freeze_.on_joints(state.stamp, state.positions_rad != states_.back().positions_rad);
     if (state.positions_rad.size() != states_.back().positions_rad.size()) states_.clear();
   }
   states_.push_back(std::move(state));

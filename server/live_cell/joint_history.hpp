@@ -6,17 +6,23 @@
 #include <vector>
 
 #include "core/sensing/images.hpp"
+#include "server/live_cell/freeze_watch.hpp"
 
 namespace calibrd {
 
 /// The joint states of the last seconds, oldest first. Not thread-safe.
 class JointHistory {
  public:
-  explicit JointHistory(Clock::duration span = std::chrono::seconds(2)) : span_(span) {}
+  explicit JointHistory(Clock::duration span = std::chrono::seconds(2)) : span_(span), freeze_(span) {}
 
   /// States not newer than the newest, or with another number of joints, start a new history or are ignored.
   void add(JointState state);
   void clear() { states_.clear(); }
+  /// A status of that moment. Unset: the controller does not know whether it moves.
+  void note_status(Clock::time_point stamp, std::optional<bool> in_motion) {
+    freeze_.on_status(stamp, in_motion);
+  }
+  const FreezeWatch& freeze() const { return freeze_; }
 
   const JointState* newest() const { return states_.empty() ? nullptr : &states_.back(); }
   const std::deque<JointState>& states() const { return states_; }
@@ -38,6 +44,7 @@ class JointHistory {
  private:
   Clock::duration span_;
   std::deque<JointState> states_;
+  FreezeWatch freeze_;
 };
 
 }  // namespace calibrd

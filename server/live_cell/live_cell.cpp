@@ -4,7 +4,6 @@
 
 #include "api/problem/api_error.hpp"
 #include "server/live_cell/pose_basis.hpp"
-#include "server/recording/record.hpp"
 
 namespace calibrd {
 
@@ -18,18 +17,22 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
+      motions_(settings_.motion, robot_, log_.on_motion),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
+      cloud_merger_(virtual_cell),
+      obstacle_watch_(virtual_cell),
       jobs_(
           store, estimator_.calibrate,
           [this](const auto& calibration, auto seen_at, auto views) {
-            publish(calibration, {seen_at, false, {}}, std::move(views));
+            publish(calibration, {seen_at, false, {}}, {std::move(views), {}});
           },
           [this](const auto& calibration) {
             if (log_.on_calibration) log_.on_calibration(calibration);
             healer_.on_calibration(calibration);
           },
-          settings_.jobs),
+          settings_.jobs,
+          [this](auto& sensor, auto views, auto& result) { compare_with_others(sensor, views, result); }),
       healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
 
 LiveCell::~LiveCell() {
@@ -48,7 +51,9 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
   entry->sensor = std::make_unique<LiveSensor>(
       LiveSensorSettings{setup.id, basis, setup.camera, gate, settings_.watch, setup.workspace}, robot_,
       estimator_.make_check(setup.camera), [this](const auto& pose) { hear_of_pose(pose); },
-      estimator_.make_watch ? estimator_.make_watch(setup.camera) : nullptr);
+      make_monitor(setup),
+      setup.estimates_time_offset && estimator_.make_time_offset ? estimator_.make_time_offset(setup.camera)
+                                                                 : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
   if (!stored) return stored.error();
@@ -64,7 +69,7 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
   if (const auto changes = basis_changes(stored.basis, sensor.basis()); !changes.empty())
     origin.objection = "the configuration has changed since the pose was found: " + changes +
                        "; calibrate again, or activate the calibration to use its pose all the same";
-  publish(stored.calibration, origin);
+  publish(stored.calibration, origin, stored_background(stored.calibration.id));
 }
 
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
@@ -82,12 +87,33 @@ void LiveCell::store_drift(const api::PoseReport& pose) {
       " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
 }
 
+std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {
+  if (!estimator_.make_watch) return nullptr;
+  return std::make_unique<DriftMonitor>(
+      estimator_.make_watch(setup.camera),
+      [this](const auto& calibration_id, const auto& depth_m) { store_background(calibration_id, depth_m); });
+}
+
+/// So that a sensor that is moved while nobody watches is found out after a restart, too.
+void LiveCell::store_background(const std::string& calibration_id, const std::vector<float>& depth_m) {
+  const auto stored = store_.add_background(calibration_id, depth_m);
+  if (!stored && log_.on_error)
+    log_.on_error("the background of calibration " + calibration_id +
+                  " could not be stored: " + stored.error().message());
+}
+
+DriftMonitor::Background LiveCell::stored_background(const std::string& calibration_id) {
+  auto depth_m = store_.background(calibration_id);
+  return {{}, depth_m && *depth_m ? **std::move(depth_m) : std::vector<float>()};
+}
+
 void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {
   entries_.at(sensor_id)->sensor->start(std::move(source));
 }
 
 void LiveCell::request_stop() {
   is_stopping_ = true;
+  motions_.request_stop();
   for (const auto& [id, entry] : entries_) {
     entry->sensor->request_stop();
     const std::lock_guard lock(entry->recording);
@@ -98,12 +124,12 @@ void LiveCell::request_stop() {
 }
 
 void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-                       std::vector<View> views) {
+                       DriftMonitor::Background background) {
   const auto entry = entries_.find(calibration.sensor_id);
   if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
   entry->second->sensor->set_pose(
       {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin,
-      std::move(views));
+      std::move(background));
 }
 
 Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
@@ -183,92 +209,8 @@ Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view i
   if (!entry) return entry.error();
   if (auto activated = store_.activate(*found, (*entry)->sensor->basis()); !activated)
     return fail(ApiError::storage_failed, activated.error().message());
-  publish(*found, {});
+  publish(*found, {}, stored_background(found->id));
   return jobs_.find(std::string(id));
-}
-
-Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const {
-  if (const auto entry = find(query.sensor_id); !entry) return entry.error();
-  if (!query.before.empty()) {
-    const auto before = store_.find(query.before);
-    if (!before) return fail(ApiError::storage_failed, before.error().message());
-    if (!*before || (*before)->sensor_id != query.sensor_id)
-      return fail(ApiError::bad_query,
-                  "before: " + query.before + " is no calibration of " + query.sensor_id);
-  }
-  auto page = store_.history(query);
-  if (!page) return fail(ApiError::storage_failed, page.error().message());
-  for (auto& calibration : page->calibrations)
-    if (!calibration.finished)
-      if (auto live = jobs_.find(calibration.id)) calibration = *std::move(live);
-  return page;
-}
-
-Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& request) const {
-  const auto entry = find(request.sensor_id);
-  if (!entry) return entry.error();
-  const auto evidence = (*entry)->sensor->evidence();
-  if (!evidence) {
-    const auto pose = (*entry)->sensor->pose();
-    return pose.known ? fail(ApiError::calibrate_first, request.sensor_id + ": " + pose.reason)
-                      : fail(ApiError::no_pose, request.sensor_id);
-  }
-  PlanningSettings planning;
-  planning.min_height_m = request.table_height_m;
-  planning.min_change_rad = settings_.jobs.collector.min_distance_rad;
-  auto suggestion = suggest_posture(virtual_cell_, (*entry)->setup.camera, evidence->T_base_sensor,
-                                    evidence->covariance, evidence->postures, planning);
-  if (!suggestion) return fail(ApiError::no_posture, request.sensor_id);
-  return *std::move(suggestion);
-}
-
-Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequest& request) {
-  auto collector = settings_.jobs.collector;
-  collector.postures = request.postures;
-  collector.frames_per_posture = 1;  // a recording holds what the sensor delivered
-  const auto task = std::make_shared<CollectTask>(collector);
-  {
-    const std::lock_guard lock(entry.recording);
-    if (is_stopping_) return fail(ApiError::shutting_down);
-    if (entry.recording_task) return fail(ApiError::capture_in_progress, entry.setup.id);
-    entry.recording_task = task;
-  }
-  entry.sensor->feed(task);
-  const bool complete =
-      task->wait_until(Clock::now() + std::chrono::duration_cast<Clock::duration>(request.timeout));
-  task->cancel();
-  {
-    const std::lock_guard lock(entry.recording);
-    entry.recording_task.reset();
-  }
-  if (complete) return task->take_views();
-  if (is_stopping_) return fail(ApiError::shutting_down);
-  const auto hindrance = entry.sensor->hindrance();
-  return fail(ApiError::postures_not_seen,
-              std::to_string(task->seen()) + " of " + std::to_string(request.postures) + " postures" +
-                  dropped_postures(*task) + (hindrance.empty() ? "" : "; " + hindrance));
-}
-
-Result<api::CaptureArchive> LiveCell::record_capture(const api::CaptureRequest& request) {
-  const auto entry = find(request.sensor_id);
-  if (!entry) return entry.error();
-  auto views = collect(**entry, request);
-  if (!views) return views.error();
-  Capture capture;
-  capture.note = request.note;
-  capture.urdf = settings_.urdf;
-  capture.base_link = settings_.base_link;
-  capture.joint_names = robot_.model().position_names();
-  capture.sensor_id = request.sensor_id;
-  capture.camera = (*entry)->setup.camera;
-  capture.views = *std::move(views);
-  return archive_capture(capture, settings_.search_paths);
-}
-
-Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {
-  const auto entry = find(request.sensor_id);
-  if (!entry) return entry.error();
-  return clouds_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
 }
 
 Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
@@ -282,6 +224,9 @@ Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
                const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
       return checker->check(view, T_base_sensor, correction);
     };
+  };
+  estimator.make_time_offset = [&cell](const CameraModel& camera) {
+    return std::make_unique<TimeOffsetEstimator>(cell, camera);
   };
   estimator.make_watch = [&cell, drift](const CameraModel& camera) {
     return std::make_unique<DriftWatch>(cell, camera, drift);

@@ -11,9 +11,13 @@
 #include "api/service/cell_service.hpp"
 #include "server/live_cell/calibration_jobs.hpp"
 #include "server/live_cell/cloud_maker.hpp"
+#include "server/live_cell/cloud_merger.hpp"
 #include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
+#include "server/live_cell/obstacle_watch.hpp"
+#include "server/live_cell/robot_motions.hpp"
+#include "server/live_cell/sensor_comparison.hpp"
 #include "server/storage/calibration_store.hpp"
 
 namespace calibrd {
@@ -24,6 +28,8 @@ struct Estimator {
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
   /// One for each sensor; unset: poses are checked against the robot alone.
   std::function<std::unique_ptr<DriftWatch>(const CameraModel&)> make_watch = {};
+  /// One for each sensor that wants it; unset: time offsets are not estimated.
+  std::function<std::unique_ptr<TimeOffsetEstimator>(const CameraModel&)> make_time_offset = {};
 };
 
 struct LiveCellSettings {
@@ -37,6 +43,7 @@ struct LiveCellSettings {
   PoseWatchSettings watch;
   JobSettings jobs;
   HealerSettings healing;
+  RobotMotionSettings motion;
 };
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
@@ -44,6 +51,7 @@ struct CellLog {
   CalibrationJobs::Log on_calibration;                  ///< see CalibrationJobs
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
   std::function<void(const std::string&)> on_error;     ///< what went wrong and was asked for by nobody
+  RobotMotions::Log on_motion = [](const auto&, bool) {};
 };
 
 struct SensorSetup {
@@ -53,6 +61,7 @@ struct SensorSetup {
   std::optional<Pose> guess_T_base_sensor;
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
   bool mirror = false;                         ///< its rows are flipped before anybody sees them
+  bool estimates_time_offset = true;
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.
@@ -65,6 +74,7 @@ class LiveCell : public api::CellService {
   ~LiveCell() override;
 
   LiveRobot& robot_link() { return robot_; }
+  RobotMotions& robot_motions() { return motions_; }
 
   /// Restores the sensor's stored pose. Error: StorageError.
   Status add_sensor(const SensorSetup& setup);
@@ -88,6 +98,16 @@ class LiveCell : public api::CellService {
   Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
+  Result<api::MotionReport> start_motion(const api::MotionRequest& request) override {
+    return motions_.start(request);
+  }
+  api::MotionsReport motions() const override { return motions_.list(); }
+  Result<api::MotionReport> motion(std::string_view id) const override { return motions_.find(id); }
+  Result<api::MotionReport> stop_motion(std::string_view id) override { return motions_.stop(id); }
+  Result<api::ObstaclesReport> obstacles(const std::string& sensor_id) const override;
+  std::vector<api::SensorPair> cross_checks() const override;
+  Result<api::MergedCloud> merged_cloud(const api::MergedCloudRequest& request) const override;
+  Result<api::CellCalibrations> start_calibrations(const api::CellCalibrationRequest& request) override;
 
  private:
   struct Entry {
@@ -100,10 +120,14 @@ class LiveCell : public api::CellService {
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-               std::vector<View> views = {});
+               DriftMonitor::Background background = {});
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
+  std::unique_ptr<DriftMonitor> make_monitor(const SensorSetup& setup);
+  void store_background(const std::string& calibration_id, const std::vector<float>& depth_m);
+  DriftMonitor::Background stored_background(const std::string& calibration_id);
+  void compare_with_others(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -115,8 +139,12 @@ class LiveCell : public api::CellService {
   std::atomic<bool> is_stopping_{false};
   const std::string robot_basis_;
   LiveRobot robot_;
+  mutable RobotMotions motions_;    // hears of every posture that is suggested
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
+  mutable CloudMerger cloud_merger_;
+  mutable ObstacleWatch obstacle_watch_;
+  const SensorComparison comparison_{virtual_cell_};
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   CalibrationJobs jobs_;                                                // its thread uses the others
   Healer healer_;                                                       // last: its thread uses jobs_

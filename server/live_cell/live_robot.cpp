@@ -58,6 +58,8 @@ RobotLinkEvents LiveRobot::events() {
   events.on_status = [this](const ControllerStatus& status) {
     const std::lock_guard lock(mutex_);
     status_ = status;
+    history_.note_status(status.stamp - latency_,
+                         stillness_.trust_in_motion ? status.in_motion : std::nullopt);
   };
   events.on_health = [this](const RobotLinkHealth& health) {
     const std::lock_guard lock(mutex_);
@@ -78,14 +80,30 @@ void LiveRobot::take(const ControllerJoints& joints) {
   const std::lock_guard lock(mutex_);
   mapping_problem_ = positions ? std::string() : positions.error().message();
   if (!positions) return;
+  controller_values_ = joints.positions_rad;
   history_.add({*std::move(positions), velocities ? *std::move(velocities) : std::vector<double>(),
                 joints.sequence, joints.stamp - latency_});
+}
+
+bool LiveRobot::is_stale(const JointState& joints) const {
+  const std::lock_guard lock(mutex_);
+  return Clock::now() - joints.stamp > stillness_.stale_after || history_.freeze().is_frozen();
+}
+
+std::uint64_t LiveRobot::connects() const {
+  const std::lock_guard lock(mutex_);
+  return health_source_ ? health_source_().connects : health_.connects;
 }
 
 std::optional<JointState> LiveRobot::newest_joints() const {
   const std::lock_guard lock(mutex_);
   const auto* newest = history_.newest();
   return newest ? std::optional<JointState>(*newest) : std::nullopt;
+}
+
+Result<std::vector<double>> LiveRobot::controller_values(std::span<const double> positions_rad) const {
+  const std::lock_guard lock(mutex_);
+  return mapping_.controller_values(positions_rad, controller_values_);
 }
 
 api::RobotReport LiveRobot::report() const {
@@ -106,6 +124,7 @@ api::RobotReport LiveRobot::report() const {
     report.framing_errors = health.framing_errors;
     report.rejected_values = health.rejected_values;
     if (const auto* newest = history_.newest()) report.joints = *newest;
+    report.joints_frozen = history_.freeze().is_frozen();
     report.still = is_still(history_, stillness_, now);
     if (status_) report.controller = controller_report(*status_, health.status_fresh, now);
   }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "api/service/reports.hpp"
 #include "core/robot/joint_mapping.hpp"
@@ -38,10 +40,14 @@ class LiveRobot {
 
   const RobotModel& model() const { return model_; }
   std::optional<JointState> newest_joints() const;
-  /// Joints are there and fresh.
-  bool is_stale(const JointState& joints) const {
-    return Clock::now() - joints.stamp > stillness_.stale_after;
-  }
+  /// What the controller is at when the model is at these positions; values of axes that move no joint are
+  /// the newest. Errors: JointMappingError.
+  Result<std::vector<double>> controller_values(std::span<const double> positions_rad) const;
+
+  /// They are too old, or the controller goes on sending the same ones while it says that it moves.
+  bool is_stale(const JointState& joints) const;
+  /// Of the link, since start.
+  std::uint64_t connects() const;
 
   /// Also computes where the links are.
   api::RobotReport report() const;
@@ -57,6 +63,7 @@ class LiveRobot {
 
   mutable std::mutex mutex_;  // guards what follows
   JointHistory history_;
+  std::vector<double> controller_values_;  // newest, as they came
   std::optional<ControllerStatus> status_;
   RobotLinkHealth health_;
   std::function<RobotLinkHealth()> health_source_;

@@ -12,6 +12,9 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
+/// A sensor that has moved is seen from frame to frame within this, once it rests.
+constexpr double kRest_m = 0.005, kRest_rad = 0.004;
+constexpr std::size_t kMostPending = 15;  ///< frames that wait for joints: of controllers later than sensors
 
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
@@ -20,13 +23,17 @@ double seconds_of(Clock::time_point time) {
 }  // namespace
 
 LiveSensor::LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
-                       std::function<void(const api::PoseReport&)> on_pose, std::unique_ptr<DriftWatch> watch)
+                       std::function<void(const api::PoseReport&)> on_pose,
+                       std::unique_ptr<DriftMonitor> monitor,
+                       std::unique_ptr<TimeOffsetEstimator> time_offset)
     : settings_(std::move(settings)),
       robot_(robot),
       check_(std::move(check)),
       on_pose_(std::move(on_pose)),
-      monitor_(watch ? std::make_unique<DriftMonitor>(std::move(watch)) : nullptr),
-      gate_(settings_.gate),
+      monitor_(std::move(monitor)),
+      reach_(std::make_shared<const LinkReach>(robot.model())),
+      offset_(std::move(time_offset), reach_, {.latency = settings_.gate.latency}),
+      gate_(settings_.gate, reach_),
       watch_(settings_.watch) {}
 
 LiveSensor::~LiveSensor() {
@@ -49,9 +56,11 @@ void LiveSensor::start(std::unique_ptr<DepthSource> source) {
 void LiveSensor::run() {
   auto* source = source_.get();
   while (!is_stopping_) {
-    if (auto frame = source->next(pending_ ? kJointsPatience : kFramePatience)) take_up(*std::move(frame));
+    if (auto frame = source->next(pending_.empty() ? kFramePatience : kJointsPatience))
+      take_up(*std::move(frame));
     notice_loss(source->health());
-    if (pending_) settle();
+    settle();
+    watch_offset();
     tell_of_pose();
   }
   std::unique_lock lock(mutex_);
@@ -60,20 +69,20 @@ void LiveSensor::run() {
 }
 
 void LiveSensor::take_up(DepthFrame frame) {
-  if (pending_) finish({FrameVerdict::awaiting_joints, std::nullopt});
+  if (pending_.size() >= kMostPending) finish({FrameVerdict::awaiting_joints, std::nullopt});
   {
     const std::lock_guard lock(mutex_);
     arrivals_.push_back(frame.stamp);
     if (arrivals_.size() > kRateFrames) arrivals_.pop_front();
   }
   if (!has_size_of_camera(frame)) return note(FrameVerdict::wrong_size);
-  if (const auto verdict = gate_.enter(frame.sequence, frame.stamp); verdict != FrameVerdict::usable)
+  if (const auto verdict = gate_.enter(frame.sequence, frame.stamp, &frame.depth);
+      verdict != FrameVerdict::usable)
     return note(verdict);
-  pending_ = std::make_unique<Sighting>();
-  pending_->view.depth = std::move(frame.depth);
-  pending_->view.image = std::move(frame.image);
-  pending_->view.stamp_s = seconds_of(frame.stamp);
-  pending_->stamp = frame.stamp;
+  auto& entered = *pending_.emplace_back(std::make_shared<Sighting>());
+  entered.view.depth = std::move(frame.depth);
+  entered.view.image = std::move(frame.image);
+  entered.stamp = entered.exposed = frame.stamp;
 }
 
 bool LiveSensor::has_size_of_camera(const DepthFrame& frame) const {
@@ -87,23 +96,35 @@ bool LiveSensor::has_size_of_camera(const DepthFrame& frame) const {
 }
 
 void LiveSensor::settle() {
-  auto decision =
-      robot_.read_joints([this](const JointHistory& joints) { return gate_.judge(joints, Clock::now()); });
-  if (decision.verdict != FrameVerdict::awaiting_joints) finish(std::move(decision));
+  while (!pending_.empty()) {
+    auto decision = robot_.read_joints([this](const JointHistory& joints) {
+      return gate_.judge(joints, pending_.front()->stamp, Clock::now());
+    });
+    if (decision.verdict == FrameVerdict::awaiting_joints) return;
+    finish(std::move(decision));
+  }
 }
 
 void LiveSensor::finish(FrameDecision decision) {
-  if (decision.positions_rad) pending_->view.joint_positions_rad = *std::move(decision.positions_rad);
-  const std::shared_ptr<const Sighting> sighting = std::move(pending_);
+  const auto finished = std::move(pending_.front());
+  pending_.pop_front();
+  if (decision.positions_rad) finished->view.joint_positions_rad = *std::move(decision.positions_rad);
+  if (decision.exposed != Clock::time_point()) finished->exposed = decision.exposed;
+  finished->view.stamp_s = seconds_of(finished->exposed);
+  const bool usable = decision.verdict == FrameVerdict::usable,
+             timed = decision.verdict == FrameVerdict::timed;
+  finished->view.is_moving = !usable;
+  const std::shared_ptr<const Sighting> sighting = finished;
   note(decision.verdict);
   {
     const std::lock_guard lock(mutex_);
     newest_ = sighting;
+    timing_error_m_ = decision.timing_error_m;
   }
-  const bool usable = decision.verdict == FrameVerdict::usable;
-  serve_tasks(*sighting, usable);
+  offset_.offer(sighting);
+  serve_tasks(*sighting, usable || timed);
   watch(*sighting);
-  if (usable) check(*sighting);
+  if (usable || timed) check(*sighting);
 }
 
 std::vector<std::shared_ptr<CollectTask>> LiveSensor::open_tasks() {
@@ -131,16 +152,41 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
   for (const auto& task : open_tasks()) task->start_over();
 }
 
+/// Poses that are not known to be right now must not teach it.
+void LiveSensor::watch_offset() {
+  std::optional<OffsetBasis> basis;
+  {
+    const std::lock_guard lock(mutex_);
+    if (known_ && watch_.state() == api::PoseState::calibrated)
+      basis = OffsetBasis{*known_->result.T_base_sensor, known_->result.depth_correction, pose_number_};
+  }
+  offset_.work(robot_, basis, robot_.connects() + restarts_);
+  gate_.set_offset(offset_.applied());
+}
+
 void LiveSensor::watch(const Sighting& sighting) {
   if (!monitor_) return;
   monitor_->add_frame(sighting.view);
+  notice_move();
   const std::lock_guard lock(mutex_);  // a pose that is set now resets what the monitor says
   if (sighting.stamp <= lost_at_) return;
   const bool was_plausible = watch_.is_plausible();
   if (monitor_->verdict() == DriftVerdict::sensor_moved) watch_.on_sensor_moved();
-  if (monitor_->is_in_place()) watch_.on_background_in_place(Clock::now());
+  if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
+}
+
+/// Views of before and after a move never come together, also while the sensor goes on moving.
+void LiveSensor::notice_move() {
+  const auto seen = monitor_->T_base_sensor_seen();
+  if (!seen) return resting_at_.reset();
+  if (resting_at_) {
+    const Vector6d since = difference(*resting_at_, *seen);
+    if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
+  }
+  resting_at_ = seen;
+  for (const auto& task : open_tasks()) task->start_over();
 }
 
 bool LiveSensor::is_check_due(Clock::time_point now) const {
@@ -162,7 +208,7 @@ void LiveSensor::check(const Sighting& sighting) {
   if (number != pose_number_) return;
   if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
-  watch_.on_check(checked, Clock::now());
+  watch_.on_check(checked, sighting.stamp);  // not now: a check proves nothing of later than its frame
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
 }
@@ -183,9 +229,10 @@ void LiveSensor::tell_of_pose() {
   if (on_pose_) on_pose_(pose());
 }
 
-void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views) {
+void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                          DriftMonitor::Background background) {
   const std::lock_guard lock(mutex_);
-  if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(views));
+  if (monitor_) monitor_->set_pose(known.calibration_id, *known.result.T_base_sensor, std::move(background));
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;
@@ -198,6 +245,13 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   else
     watch_.set_stored();
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
+}
+
+void LiveSensor::withhold(const std::string& objection) {
+  const std::lock_guard lock(mutex_);
+  if (!known_) return;
+  watch_.set_withheld(objection);
+  evidence_.reset();
 }
 
 std::optional<Pose> LiveSensor::plausible_pose() const {

@@ -16,7 +16,9 @@
 #include "server/live_cell/collect_task.hpp"
 #include "server/live_cell/drift_monitor.hpp"
 #include "server/live_cell/live_robot.hpp"
+#include "server/live_cell/offset_watch.hpp"
 #include "server/live_cell/pose_watch.hpp"
+#include "server/live_cell/sighting.hpp"
 #include "server/live_cell/view_gate.hpp"
 
 namespace calibrd {
@@ -47,22 +49,18 @@ struct LiveSensorSettings {
   std::vector<WorkspacePoint> workspace;
 };
 
-/// One frame and what is known of the robot at its time.
-struct Sighting {
-  View view;  ///< joint_positions_rad empty when the joints of the frame's time are not known
-  Clock::time_point stamp;
-};
-
 /// One sensor: a thread that reads its frames, decides which become views, feeds those who collect postures,
 /// and keeps checking the current pose. Safe to call from any thread.
 class LiveSensor {
  public:
   /// `robot` must outlive it.
-  /// `watch`: nothing, or what follows the pose frame by frame.
+  /// `monitor`: nothing, or what follows the pose frame by frame.
   /// `on_pose` hears, on the sensor's thread, of every change of the pose, its state or its validity.
+  /// `time_offset`: null when the configured latencies are to be taken for true.
   LiveSensor(LiveSensorSettings settings, LiveRobot& robot, CheckFunction check,
              std::function<void(const api::PoseReport&)> on_pose = {},
-             std::unique_ptr<DriftWatch> watch = {});
+             std::unique_ptr<DriftMonitor> monitor = {},
+             std::unique_ptr<TimeOffsetEstimator> time_offset = {});
   ~LiveSensor();
 
   void start(std::unique_ptr<DepthSource> source);
@@ -78,9 +76,13 @@ class LiveSensor {
 
   const std::string& basis() const { return settings_.basis; }
 
-  /// The pose being served. A stored one is unverified until a check agrees. `views`: those it was just found
-  /// from.
-  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin, std::vector<View> views = {});
+  /// The pose being served. A stored one is unverified until a check agrees. `background`: of the pose.
+  void set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
+                DriftMonitor::Background background = {});
+
+  /// Something else speaks against the pose being served: until another one takes over it is not valid,
+  /// whatever its checks say.
+  void withhold(const std::string& objection);
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
@@ -100,6 +102,10 @@ class LiveSensor {
   api::DriftReport drift() const;
   /// Where a sensor that has moved is now, as far as its background tells.
   std::optional<Pose> seen_pose() const;
+  /// See DriftMonitor.
+  std::shared_ptr<const BackgroundMap> background() const {
+    return monitor_ ? monitor_->background() : nullptr;
+  }
   api::SensorReport report() const;
   /// Why it gives no views now, and what to do; empty: it does.
   std::string hindrance() const;
@@ -113,10 +119,12 @@ class LiveSensor {
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void watch(const Sighting& sighting);
+  void notice_move();
   bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);
+  void watch_offset();
   void tell_of_pose();
   double frame_rate_hz(Clock::time_point now) const;
 
@@ -129,15 +137,19 @@ class LiveSensor {
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
+  std::optional<Pose> resting_at_;  // where a sensor that has moved was seen first, or last come to rest
+  const std::shared_ptr<const LinkReach> reach_;
+  OffsetWatch offset_;  // its report(): anybody's
   ViewGate gate_;
-  std::unique_ptr<Sighting> pending_;  // entered, its joints not all there
-  std::uint64_t restarts_ = 0;         // of the source, as far as noticed
+  std::deque<std::shared_ptr<Sighting>> pending_;  // entered, their joints not all there; oldest first
+  std::uint64_t restarts_ = 0;                     // of the source, as far as noticed
 
   mutable std::mutex mutex_;  // guards what follows
   std::unique_ptr<DepthSource> source_;
   std::shared_ptr<const Sighting> newest_;
   std::deque<Clock::time_point> arrivals_;
   FrameVerdict verdict_ = FrameVerdict::no_joints;
+  std::optional<double> timing_error_m_;  // of the newest judged frame
   std::array<std::uint64_t, kFrameVerdicts> counts_{};
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;

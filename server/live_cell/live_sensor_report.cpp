@@ -74,12 +74,16 @@ api::SensorReport LiveSensor::report() const {
   if (!arrivals_.empty()) report.frame_age = now - arrivals_.back();
   report.camera = settings_.camera;
   report.has_image = newest_ && newest_->view.image;
-  report.views.usable = verdict_ == FrameVerdict::usable;
+  report.views.usable = verdict_ == FrameVerdict::usable || verdict_ == FrameVerdict::timed;
+  report.views.timing_error_m = timing_error_m_;
+  report.time_offset = offset_.report(now);
   report.views.code = name_of(verdict_);
   report.views.reason = reason_of(verdict_);
-  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)];
+  report.views.moving_views = counts_[static_cast<std::size_t>(FrameVerdict::timed)];
+  report.views.views = counts_[static_cast<std::size_t>(FrameVerdict::usable)] + report.views.moving_views;
   for (std::size_t i = 1; i < kFrameVerdicts; ++i)
-    if (counts_[i] > 0) report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
+    if (counts_[i] > 0 && static_cast<FrameVerdict>(i) != FrameVerdict::timed)
+      report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
   report.pose_state = watch_.state();
   report.pose_valid = known_ && watch_.is_valid(now);
   return report;

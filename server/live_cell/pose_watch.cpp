@@ -49,7 +49,9 @@ void PoseWatch::on_background_in_place(Clock::time_point now) {
 }
 
 void PoseWatch::on_sensor_moved() {
-  if (state_ != PoseState::uncalibrated) state_ = PoseState::drifted;
+  if (state_ == PoseState::uncalibrated || state_ == PoseState::drifted) return;
+  state_ = PoseState::drifted;
+  moved_ = true;
 }
 
 bool PoseWatch::is_check_due(Clock::time_point now) const {
@@ -120,6 +122,10 @@ std::string PoseWatch::reason(Clock::time_point now) const {
     case PoseState::unverified:
       return doubt();
     case PoseState::drifted:
+      if (moved_)
+        return "the sensor has moved: what stands around the robot is no longer where it saw it; calibrate "
+               "again, or "
+               "wait for it where drift.healing does so";
       return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
              "stood before it, activate the calibration again";
     case PoseState::calibrated:

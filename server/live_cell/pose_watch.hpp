@@ -71,6 +71,7 @@ class PoseWatch {
   std::string objection_;
   int disagreements_ = 0;  // in a row
   Clock::time_point disagrees_since_;
+  bool moved_ = false;  // drifted by the background's word
   std::optional<Clock::time_point> in_place_at_;
   std::optional<Clock::time_point> checked_at_, passed_at_, evidence_at_;
   PoseCheck last_;

@@ -19,6 +19,7 @@ void PostureCollector::offer(const View& view) {
   if (is_complete()) return;
   is_waiting_for_motion_ = !is_new(view.joint_positions_rad);
   if (is_waiting_for_motion_) return;
+  if (view.is_moving) return take_moving(view);
   const bool same_posture =
       frames_.empty() || posture_distance(frames_.front().joint_positions_rad, view.joint_positions_rad) <
                              settings_.min_distance_rad;
@@ -28,6 +29,14 @@ void PostureCollector::offer(const View& view) {
   views_.push_back(average_views(frames_));
   ++seen_;
   frames_.clear();
+}
+
+/// A posture that the robot passes is seen once: frames of it cannot be averaged.
+void PostureCollector::take_moving(const View& view) {
+  frames_.clear();
+  if (!settings_.moving_views) return;
+  views_.push_back(view);
+  ++seen_;
 }
 
 void PostureCollector::start_over() {

@@ -11,6 +11,7 @@ struct CollectorSettings {
   int postures = 5;
   double min_distance_rad = 0.17;  ///< another posture: some joint differs by this much
   int frames_per_posture = 1;
+  bool moving_views = false;  ///< takes views of a moving robot, too: one for each posture
 };
 
 /// Collects views of different postures, several frames of each. Without I/O; not thread-safe.
@@ -40,6 +41,7 @@ class PostureCollector {
   std::vector<View> take_views() { return std::move(views_); }
 
  private:
+  void take_moving(const View& view);
   bool is_new(const std::vector<double>& positions) const;
 
   CollectorSettings settings_;

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/sensing/images.hpp"
 #include "server/live_cell/joint_history.hpp"
+#include "server/live_cell/view_timing.hpp"
 
 namespace calibrd {
 
@@ -19,9 +22,11 @@ enum class FrameVerdict {
   moving,
   repeated,
   out_of_order,
-  wrong_size  ///< not the size of the camera model
+  wrong_size,     ///< not the size of the camera model
+  joints_frozen,  ///< the controller's status lives, its joints do not
+  timed  ///< robot moving, joints of the frame's time known well enough: a view, where such are taken
 };
-inline constexpr std::size_t kFrameVerdicts = 8;
+inline constexpr std::size_t kFrameVerdicts = 10;
 
 /// Stable name for programs: "usable", "moving", …
 const char* name_of(FrameVerdict verdict);
@@ -33,12 +38,21 @@ struct ViewGateSettings {
   Clock::duration settle_time = std::chrono::milliseconds(300);
   Clock::duration latency{0};        ///< from exposure to the frame's stamp
   double still_speed_rad_s = 0.002;  ///< the robot is still while no joint is faster
+  bool trust_in_motion = true;       ///< a robot whose controller says that it moves is not still
+  bool timed_views = false;          ///< frames of a moving robot may be views, too
+  /// ... when no point of it is farther than this from where the joints put it: below what one view's noise
+  /// does to a pose, and a time that is off by the same in every view is not averaged away.
+  double largest_timing_error_m = 0.3e-3;
 };
 
 struct FrameDecision {
   FrameVerdict verdict = FrameVerdict::no_joints;
   std::optional<std::vector<double>>
-      positions_rad;  ///< at the frame's time, also of a moving robot, where known
+      positions_rad;            ///< at the frame's time, also of a moving robot, where known
+  Clock::time_point exposed{};  ///< the moment they are of
+  /// How far (m) any point of the robot may be from where these positions put it, because the frame's time is
+  /// known so well only (1 sigma); 0 while it stands still, nothing where the time offset is not estimated.
+  std::optional<double> timing_error_m = std::nullopt;
 };
 
 /// Decides which frames become views: only those whose joints are known for certain, because the robot stood
@@ -46,19 +60,34 @@ struct FrameDecision {
 /// Without I/O; not thread-safe; one gate for each sensor.
 class ViewGate {
  public:
-  explicit ViewGate(const ViewGateSettings& settings) : settings_(settings) {}
+  /// `reach`: of the robot; without it nothing is said about frames of a moving robot.
+  explicit ViewGate(const ViewGateSettings& settings, std::shared_ptr<const LinkReach> reach = nullptr)
+      : settings_(settings), reach_(std::move(reach)) {}
 
-  /// Takes up the next frame. usable stands here for "judge() it".
-  FrameVerdict enter(std::uint64_t sequence, Clock::time_point stamp);
+  /// Takes up the next frame. usable stands here for "judge() it". `depth`: its pixels, where there are any:
+  /// a whole frame that is the same to the last bit is the one before it, whatever its number and stamp.
+  FrameVerdict enter(std::uint64_t sequence, Clock::time_point stamp, const DepthImage* depth = nullptr);
 
-  /// The frame that was entered last, as often as it takes until the answer is not awaiting_joints.
-  FrameDecision judge(const JointHistory& joints, Clock::time_point now) const;
+  /// The time offset that frames are judged with from now on; nothing: it is not known.
+  void set_offset(const std::optional<AppliedOffset>& offset) { offset_ = offset; }
+
+  /// The frame that arrived at `stamp`, as often as it takes until the answer is not awaiting_joints.
+  FrameDecision judge(const JointHistory& joints, Clock::time_point stamp, Clock::time_point now) const;
+  /// The frame that was entered last.
+  FrameDecision judge(const JointHistory& joints, Clock::time_point now) const {
+    return judge(joints, stamp_, now);
+  }
 
  private:
-  FrameVerdict without_joints_around(const JointHistory& joints, Clock::time_point now) const;
+  FrameVerdict without_joints_around(const JointHistory& joints, Clock::time_point exposed,
+                                     Clock::time_point now) const;
+  FrameVerdict judge_motion(const JointHistory& joints, FrameDecision& decision) const;
 
   ViewGateSettings settings_;
+  std::shared_ptr<const LinkReach> reach_;
+  std::optional<AppliedOffset> offset_;
   std::optional<std::uint64_t> sequence_;
+  std::optional<std::uint64_t> pixels_;  // fingerprint of the frame before
   Clock::time_point stamp_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "api/json/calibration_result_json.hpp"
 #include "api/routes/names.hpp"
+#include "server/storage/background_text.hpp"
 #include "server/storage/schema.hpp"
 
 namespace calibrd {
@@ -155,6 +156,24 @@ Status CalibrationStore::add_drift(const std::string& calibration_id) {
       "(SELECT MAX(b.number) FROM activations b WHERE b.sensor_id = a.sensor_id)");
   insert.bind(ms_of(std::chrono::system_clock::now())).bind(calibration_id).next();
   return insert.status(StorageError::cannot_write);
+}
+
+Status CalibrationStore::add_background(const std::string& calibration_id,
+                                        const std::vector<float>& depth_m) {
+  const std::lock_guard lock(mutex_);
+  Statement insert(database_, "INSERT OR IGNORE INTO backgrounds (calibration_id, depths) VALUES (?, ?)");
+  insert.bind(calibration_id).bind(background_text(depth_m)).next();
+  return insert.status(StorageError::cannot_write);
+}
+
+Result<std::optional<std::vector<float>>> CalibrationStore::background(const std::string& calibration_id) {
+  const std::lock_guard lock(mutex_);
+  Statement query(database_, "SELECT depths FROM backgrounds WHERE calibration_id = ?");
+  query.bind(calibration_id);
+  std::optional<std::vector<float>> found;
+  if (query.next()) found = parse_background(query.text(0));
+  if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+  return found;
 }
 
 Result<std::optional<CalibrationReport>> CalibrationStore::find_where(const std::string& condition,

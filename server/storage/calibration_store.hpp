@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
@@ -48,6 +49,12 @@ class CalibrationStore {
   /// Records that the calibration's pose has drifted, if it is its sensor's current one. It has until it is
   /// activated again.
   Status add_drift(const std::string& calibration_id);
+
+  /// Keeps the depths (m, 0 = unknown; kept to 0.1 mm, up to 6.5 m) of what a calibration's sensor saw around
+  /// the robot. The first ones stay.
+  Status add_background(const std::string& calibration_id, const std::vector<float>& depth_m);
+  /// Nothing where none were kept, or they are damaged.
+  Result<std::optional<std::vector<float>>> background(const std::string& calibration_id);
 
   Result<std::optional<api::CalibrationReport>> find(const std::string& id);
   Result<std::optional<CurrentCalibration>> current(const std::string& sensor_id);

@@ -56,8 +56,18 @@ CREATE TRIGGER drifts_stay BEFORE UPDATE ON drifts BEGIN SELECT RAISE(ABORT, 'dr
 CREATE TRIGGER drifts_remain BEFORE DELETE ON drifts BEGIN SELECT RAISE(ABORT, 'drifts are kept'); END;
 )sql";
 
+/// What a sensor saw around the robot when its pose was found: see background_text.hpp.
+inline constexpr const char* kBackgrounds = R"sql(
+CREATE TABLE backgrounds (
+  calibration_id TEXT PRIMARY KEY REFERENCES calibrations (id),
+  depths TEXT NOT NULL
+);
+CREATE TRIGGER backgrounds_stay BEFORE UPDATE ON backgrounds BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
+CREATE TRIGGER backgrounds_remain BEFORE DELETE ON backgrounds BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
+)sql";
+
 /// Steps from an empty file to today's schema. The file's user_version is how many it has taken; a change is
 /// one more step, and the steps before it stay as they are.
-inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift};
+inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds};
 
 }  // namespace calibrd

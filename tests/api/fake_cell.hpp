@@ -24,6 +24,15 @@ class FakeCell : public CellService {
   PostureSuggestion suggestion;
   mutable NextPostureRequest last_next_posture;
   std::string cancelled, activated;
+  MotionRequest last_motion;
+  std::function<Result<MotionReport>(const MotionRequest&)> on_motion;
+  MotionReport motion_report;
+  std::string stopped;
+  ObstaclesReport obstacles_report;
+  MergedCloud merged_report;
+  mutable MergedCloudRequest last_merged;
+  CellCalibrationRequest last_start_all;
+  std::vector<CellCalibrations::Refused> refused_starts;
 
   FakeCell() {
     pose_report.sensor_id = sensor_report.id = "kinect2";
@@ -33,6 +42,9 @@ class FakeCell : public CellService {
     robot_report.link_state = "streaming";
     calibration_report.id = "c1";
     calibration_report.sensor_id = "kinect2";
+    motion_report.id = "m1";
+    motion_report.route = "tour";
+    motion_report.postures = 3;
   }
 
   void make_calibrated() {
@@ -91,6 +103,31 @@ class FakeCell : public CellService {
   Result<Cloud> cloud(const CloudRequest& request) const override {
     return of_sensor(request.sensor_id, cloud_report);
   }
+  Result<ObstaclesReport> obstacles(const std::string& sensor_id) const override {
+    return sensor_id.empty() ? obstacles_report : of_sensor(sensor_id, obstacles_report);
+  }
+  std::vector<SensorPair> pairs_report;
+  std::vector<SensorPair> cross_checks() const override { return pairs_report; }
+  Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const override {
+    last_merged = request;
+    if (merged_report.parts.empty()) return fail(ApiError::pose_not_valid);
+    return merged_report;
+  }
+  Result<CellCalibrations> start_calibrations(const CellCalibrationRequest& request) override {
+    last_start_all = request;
+    return CellCalibrations{{calibration_report}, refused_starts};
+  }
+
+  Result<MotionReport> start_motion(const MotionRequest& request) override {
+    last_motion = request;
+    return on_motion ? on_motion(request) : Result<MotionReport>(motion_report);
+  }
+  MotionsReport motions() const override { return {true, "it moves", {"tour"}, {motion_report}}; }
+  Result<MotionReport> motion(std::string_view id) const override { return of_motion(id); }
+  Result<MotionReport> stop_motion(std::string_view id) override {
+    stopped = id;
+    return of_motion(id);
+  }
 
  private:
   mutable std::mutex mutex_;  // guards pose_report while a server runs
@@ -98,6 +135,10 @@ class FakeCell : public CellService {
   Result<T> of_sensor(std::string_view id, T value) const {
     if (id != "kinect2") return fail(ApiError::no_such_sensor, std::string(id));
     return value;
+  }
+  Result<MotionReport> of_motion(std::string_view id) const {
+    if (id != "m1") return fail(ApiError::no_such_motion, std::string(id));
+    return motion_report;
   }
   Result<CalibrationReport> of_calibration(std::string_view id) const {
     if (id != "c1") return fail(ApiError::no_such_calibration, std::string(id));

@@ -91,6 +91,27 @@ struct TrackOptions {
 };
 int run_track(const TrackOptions& options);
 
+struct StepOptions {
+  std::filesystem::path urdf;
+  Paths models;
+  int port = 50241;  ///< of a controller on this machine
+  int seconds = 30;
+};
+int run_step(const StepOptions& options);
+
+struct MovingBenchOptions {
+  Paths urdfs;  ///< the scenes take them in turn
+  Paths models;
+  std::string level = "cell";
+  std::uint64_t first_seed = 1, scenes = 10;
+  std::size_t postures = 10;
+  double speed_m_s = 0.25;
+  double offset_ms = 30, jitter_ms = 1;
+  double learn_s = 30;  ///< of motion, for the time offset
+  bool also_uncorrected = false;
+};
+int run_moving(const MovingBenchOptions& options);
+
 struct ScenesOptions {
   Paths urdfs;  ///< the scenes take them in turn
   Paths models;
@@ -134,5 +155,11 @@ struct WatchCreepOptions {
   double seen_s = 1;       ///< of every minute
 };
 int run_watch_creep(const WatchCreepOptions& options);
+struct PairsOptions {
+  Paths urdfs, models;  ///< the scenes take the robots in turn
+  std::uint64_t first_seed = 1, scenes = 20;
+  std::size_t postures = 6;
+};
+int run_pairs(const PairsOptions& options);
 
 }  // namespace calibrd::bench

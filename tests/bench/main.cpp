@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "bench.hpp"
 #include "core/base/memory.hpp"
@@ -35,12 +38,13 @@ CLI::App* add_global(CLI::App& app, GlobalOptions& options) {
   return command;
 }
 
-void add_render(CLI::App& app, RenderOptions& render) {
+CLI::App* add_render(CLI::App& app, RenderOptions& render) {
   CLI::App* command = app.add_subcommand("render", "time the virtual sensor, joint update included");
   command->add_option("URDF", render.urdf)->required();
   command->add_option("--models", render.models);
   command->add_option("--distance-m", render.distance_m)->check(CLI::Range(0.1, 100.0));
   command->add_option("--runs", render.runs)->check(CLI::Range(1, 1000000));
+  return command;
 }
 
 CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
@@ -63,6 +67,37 @@ CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   command->add_flag("--bound", scenes.bound, "add the Cramer-Rao bound; needs --noise-only and --depth-only");
   command->add_option("--jobs", scenes.jobs, "scenes at a time; more than 1 spoils time_ms")
       ->check(CLI::Range(1, 256));
+  return command;
+}
+
+CLI::App* add_step(CLI::App& app, StepOptions& step) {
+  CLI::App* command =
+      app.add_subcommand("step", "time from a controller's packet to the virtual cell in step with it");
+  command->add_option("URDF", step.urdf)->required();
+  command->add_option("--models", step.models);
+  command->add_option("--port", step.port, "of a controller on this machine")->check(CLI::Range(1, 65535));
+  command->add_option("--seconds", step.seconds)->check(CLI::Range(1, 86400));
+  return command;
+}
+
+CLI::App* add_moving(CLI::App& app, MovingBenchOptions& moving) {
+  CLI::App* command =
+      app.add_subcommand("moving", "calibrate from views of a moving robot, and of the same postures still");
+  command->add_option("--robot", moving.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", moving.models, "folders to look robot models up in");
+  command->add_option("--level", moving.level)->check(CLI::IsMember({"clean", "cell", "field"}));
+  command->add_option("--first-seed", moving.first_seed);
+  command->add_option("--scenes", moving.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", moving.postures)->check(CLI::Range(2, 1000));
+  command->add_option("--speed-m-s", moving.speed_m_s, "of the robot's fastest point")
+      ->check(CLI::Range(0.02, 2.0));
+  command->add_option("--offset-ms", moving.offset_ms, "how much later frames arrive than joints")
+      ->check(CLI::Range(-150.0, 250.0));
+  command->add_option("--jitter-ms", moving.jitter_ms)->check(CLI::Range(0.0, 50.0));
+  command->add_option("--learn-s", moving.learn_s, "motion seen before the views are taken")
+      ->check(CLI::Range(1.0, 3600.0));
+  command->add_flag("--uncorrected", moving.also_uncorrected, "also with the offset left out");
   return command;
 }
 
@@ -136,48 +171,61 @@ CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
   return command;
 }
 
+CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
+  CLI::App* command =
+      app.add_subcommand("pairs", "calibrate two sensors of random scenes, check them against each other");
+  command->add_option("--robot", pairs.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", pairs.models, "folders to look robot models up in");
+  command->add_option("--first-seed", pairs.first_seed);
+  command->add_option("--scenes", pairs.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", pairs.postures)->check(CLI::Range(2, 1000));
+  return command;
+}
+
+int run_checked_scenes(const ScenesOptions& scenes) {
+  if (!scenes.bound || (scenes.noise_only && scenes.depth_only)) return run_scenes(scenes);
+  std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
+  return 2;
+}
+
+struct Command {
+  const CLI::App* declared;
+  std::function<int()> run;
+};
+
+template <class Options, class Run>
+Command command(CLI::App& app, CLI::App* (*declare)(CLI::App&, Options&), Run run) {
+  const auto options = std::make_shared<Options>();
+  const CLI::App* declared = declare(app, *options);
+  return {declared, [options, run] { return run(*options); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   calibrd::keep_freed_memory();
   CLI::App app("Measures calibrd. Prints JSON lines.");
   app.require_subcommand(1);
-  FineOptions fine;
-  GlobalOptions global;
-  RenderOptions render;
-  ScenesOptions scenes;
-  RegisterOptions clouds;
-  TrackOptions track;
-  WatchOptions watch;
-  const CLI::App* fine_command = add_fine(app, fine);
-  const CLI::App* global_command = add_global(app, global);
-  add_render(app, render);
-  const CLI::App* scenes_command = add_scenes(app, scenes);
-  const CLI::App* register_command = add_register(app, clouds);
-  const CLI::App* watch_command = add_watch(app, watch);
-  WatchHoursOptions watch_hours;
-  WatchTailOptions watch_tail;
-  WatchCreepOptions watch_creep;
-  const CLI::App* watch_tail_command = add_watch_tail(app, watch_tail);
-  const CLI::App* watch_creep_command = add_watch_creep(app, watch_creep);
-  const CLI::App* watch_hours_command = add_watch_hours(app, watch_hours);
-  const CLI::App* track_command = add_track(app, track);
+  const std::vector<Command> commands{command(app, add_fine, run_fine),
+                                      command(app, add_global, run_global),
+                                      command(app, add_render, run_render),
+                                      command(app, add_scenes, run_checked_scenes),
+                                      command(app, add_register, run_register),
+                                      command(app, add_watch, run_watch),
+                                      command(app, add_watch_tail, run_watch_tail),
+                                      command(app, add_watch_creep, run_watch_creep),
+                                      command(app, add_watch_hours, run_watch_hours),
+                                      command(app, add_pairs, run_pairs),
+                                      command(app, add_track, run_track),
+                                      command(app, add_step, run_step),
+                                      command(app, add_moving, run_moving)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (register_command->parsed()) return run_register(clouds);
-  if (watch_command->parsed()) return run_watch(watch);
-  if (watch_tail_command->parsed()) return run_watch_tail(watch_tail);
-  if (watch_creep_command->parsed()) return run_watch_creep(watch_creep);
-  if (watch_hours_command->parsed()) return run_watch_hours(watch_hours);
-  if (track_command->parsed()) return run_track(track);
-  if (global_command->parsed()) return run_global(global);
-  if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {
-    std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
-    return 2;
-  }
-  if (scenes_command->parsed()) return run_scenes(scenes);
-  return fine_command->parsed() ? run_fine(fine) : run_render(render);
+  for (const Command& each : commands)
+    if (each.declared->parsed()) return each.run();
+  return 2;
 }

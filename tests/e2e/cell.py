@@ -19,6 +19,7 @@ BUILD = Path(os.environ.get("CALIBRD_BUILD", SOURCE / "build/release"))
 BIN = BUILD / "bin"
 ROBOTS = BUILD / "share/calibrd/robots"
 URDF = ROBOTS / "demo_arm7/urdf/demo_arm7.urdf"
+SIX_AXES = BUILD / "tests/robots/test_arm6/urdf/test_arm6.urdf"
 SENSOR = "kinect2"
 OF_THIS_BUILD = (f"robot.urdf={URDF}", f"sensors.{SENSOR}.driver_directory={BUILD / 'lib/calibrd-sim-openni'}")
 
@@ -89,10 +90,11 @@ class Program:
 class Simulator(Program):
     """The simulated cell: controller, and the world that the simulated sensor looks into."""
 
-    def __init__(self, folder: Path, controller_port: int = 0, world: Path = SOURCE / "config/demo_cell/world.json"):
+    def __init__(self, folder: Path, controller_port: int = 0, world: Path = SOURCE / "config/demo_cell/world.json",
+                 urdf: Path = URDF):
         self.world_file, ready = folder / "world", folder / "simulator.ready"
         ready.unlink(missing_ok=True)
-        super().__init__("calibrd-sim", folder, "run", "--world", world, "--urdf", URDF, "--models", ROBOTS,
+        super().__init__("calibrd-sim", folder, "run", "--world", world, "--urdf", urdf, "--models", urdf.parents[2],
                          "--world-file", self.world_file, "--controller-port", controller_port, "--control-port", 0,
                          "--ready-file", ready)
         wait_until("the simulator is ready", lambda: ready.exists() or not self.alive())
@@ -100,6 +102,7 @@ class Simulator(Program):
             raise AssertionError(f"the simulator ended:\n{self.output()}")
         ports = dict(word.split("=") for word in ready.read_text().split()[1:])
         self.controller_port = int(ports["controller"].split(":")[1])
+        self.motion_port = int(ports["motion"].split(":")[1])
         self.control_port = int(ports["control"].split(":")[1])
 
     def tell(self, method: str, path: str, **body) -> dict:
@@ -129,10 +132,10 @@ class Daemon(Program):
     """calibrd with the demo's configuration; `settings` are section.key=value."""
 
     def __init__(self, folder: Path, controller_port: int, world_file: Path, *settings: str,
-                 config: Path = SOURCE / "config/demo.toml"):
+                 config: Path = SOURCE / "config/demo.toml", of_demo: bool = True):
         self.port = free_port()
         own = (f"server.port={self.port}", f"robot.port={controller_port}", f"storage.path={folder / 'calibrd.db'}",
-               *OF_THIS_BUILD)
+               *(OF_THIS_BUILD if of_demo else OF_THIS_BUILD[:1]))
         options = [word for setting in (*own, *settings) for word in ("--set", setting)]
         super().__init__("calibrd", folder, "serve", "--config", config, *options,
                          env={"CALIBRD_SIM_WORLD": str(world_file)})

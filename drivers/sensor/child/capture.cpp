@@ -127,6 +127,7 @@ Status Capture::run(FrameRingWriter& ring, ParentLink& parent) {
   auto idle_at = steady_clock::now();
   while (!is_stop_requested()) {
     ring.beat();
+    hold_up_.look(steady_clock::now());
     const auto received = receive(pairing);
     if (!received) return received.error();
     // Time counts only once nothing is left to read: a late process must not take its own delay for the
@@ -158,7 +159,8 @@ Result<bool> Capture::receive(Pairing& pairing) {
 void Capture::accept(bool is_image, Pairing& pairing) {
   const auto stamp = steady_clock::now();
   auto frame = (is_image ? image_ : depth_)->read();
-  if (!frame.isValid()) return;
+  hold_up_.look(stamp);
+  if (!frame.isValid() || !hold_up_.is_over(stamp)) return;
   const Moment moment = moment_of(frame);
   if (is_image) return pairing.add_image(frame, moment);
   last_index_ = moment.index;

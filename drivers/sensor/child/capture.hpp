@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/sensor/child/frame_pairing.hpp"
+#include "drivers/sensor/child/hold_up.hpp"
 #include "drivers/sensor/child/openni_device.hpp"
 #include "drivers/sensor/child/openni_stream.hpp"
 #include "drivers/sensor/child/parent_link.hpp"
@@ -51,6 +52,7 @@ class Capture {
   std::unique_ptr<OpenNiStream> depth_, image_;
   std::string notice_;
   FrameNumbering numbering_;
+  HoldUp hold_up_;
   std::vector<std::uint16_t> depth_pixels_, image_pixels_;
   int last_index_ = 0;
   int bad_in_a_row_ = 0;

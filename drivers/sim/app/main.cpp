@@ -26,6 +26,8 @@ CLI::App* add_run(CLI::App& app, calibrd::sim::RunOptions& options) {
   run->add_option("--world-file", options.world_file, "shared world for the OpenNI2 driver")->required();
   run->add_option("--controller-port", options.controller_port, "port of the robot controller, 0 = any")
       ->capture_default_str();
+  run->add_option("--motion-port", options.motion_port, "motion port of the robot controller, 0 = any")
+      ->capture_default_str();
   run->add_option("--control-port", options.control_port, "port of the control calls, 0 = any")
       ->capture_default_str();
   run->add_option("--ready-file", options.ready_file, "file to write the ready line to");

@@ -29,8 +29,10 @@ void keep_beating(asio::steady_timer& timer, LiveWorld& world) {
   });
 }
 
-Status announce(const RunOptions& options, const ControllerServer& controller, const ControlServer& control) {
+Status announce(const RunOptions& options, const ControllerServer& controller, const MotionServer& motion,
+                const ControlServer& control) {
   const std::string line = "ready controller=127.0.0.1:" + std::to_string(controller.port()) +
+                           " motion=127.0.0.1:" + std::to_string(motion.port()) +
                            " control=127.0.0.1:" + std::to_string(control.port()) +
                            " world=" + options.world_file.string();
   std::cout << line << std::endl;
@@ -54,16 +56,21 @@ Status run_cell(const RunOptions& options) {
   asio::io_context io(1);
   ControllerServer controller(
       io, [&world]() -> const WorldState& { return world->state(); }, description->controller);
-  ControlRoutes routes(*world, controller);
+  MotionServer motion(io,
+                      {[&world]() -> const WorldState& { return world->state(); },
+                       [&world](const WorldState& state) { world->change(state); }},
+                      controller);
+  ControlRoutes routes(*world, controller, &motion);
   ControlServer control(io, routes);
   if (auto listening = controller.listen(options.controller_port); !listening) return listening;
+  if (auto listening = motion.listen(options.motion_port); !listening) return listening;
   if (auto listening = control.listen(options.control_port); !listening) return listening;
 
   asio::steady_timer beat(io);
   keep_beating(beat, *world);
   asio::signal_set signals(io, SIGTERM, SIGINT);
   signals.async_wait([&io](boost::system::error_code, int) { io.stop(); });
-  if (auto announced = announce(options, controller, control); !announced) return announced;
+  if (auto announced = announce(options, controller, motion, control); !announced) return announced;
   io.run();
   return Done{};
 }

@@ -57,6 +57,15 @@ Eigen::Isometry3d knocked(const Eigen::Isometry3d& pose, const Eigen::Vector3d& 
   return moved;
 }
 
+json::object motion_json(const MotionServer& motion) {
+  json::object commands;
+  for (const auto& [command, count] : motion.commands().counts()) commands[std::to_string(command)] = count;
+  return {{"port", motion.port()},
+          {"accepted", motion.accepted()},
+          {"client", motion.has_client()},
+          {"commands", std::move(commands)}};
+}
+
 }  // namespace
 
 ControlResponse ControlRoutes::handle(const ControlRequest& request) {
@@ -109,6 +118,7 @@ ControlRoutes::Answer ControlRoutes::truth(const std::string& query) const {
   json::object controller = controller_json(controller_.settings());
   controller["clients"] = controller_.client_count();
   controller["port"] = controller_.port();
+  if (motion_ != nullptr) controller["motion"] = motion_json(*motion_);
   answer["controller"] = std::move(controller);
   return answer;
 }
@@ -167,14 +177,14 @@ ControlRoutes::Answer ControlRoutes::set_errors(SensorState& sensor, Fields& fie
 }
 
 ControlRoutes::Answer ControlRoutes::set_mode(SensorState& sensor, Fields& fields) const {
-  constexpr const char* kModes[] = {"normal", "silent", "hanging", "unplugged"};
   int mode = -1;
-  fields.choice("mode", {kModes[0], kModes[1], kModes[2], kModes[3]}, mode);
-  if (mode < 0) fields.fail("mode", "one of \"normal\" \"silent\" \"hanging\" \"unplugged\"");
+  fields.choice("mode", {kSensorModes[0], kSensorModes[1], kSensorModes[2], kSensorModes[3], kSensorModes[4]},
+                mode);
+  if (mode < 0) fields.fail("mode", "one of \"normal\" \"silent\" \"hanging\" \"unplugged\" \"replay\"");
   const auto next = static_cast<SensorMode>(mode);
   if (sensor.mode == SensorMode::unplugged && next == SensorMode::normal) sensor.powered_ns = monotonic_ns();
   sensor.mode = next;
-  return json::object{{"mode", mode < 0 ? "" : kModes[mode]}};
+  return json::object{{"mode", mode < 0 ? "" : kSensorModes[mode]}};
 }
 
 ControlRoutes::Answer ControlRoutes::set_motion(Fields& fields) {
@@ -205,6 +215,7 @@ ControlRoutes::Answer ControlRoutes::set_controller(Fields& fields) {
   read_controller(fields, settings);
   if (auto read = fields.finish(); !read) return read.error();
   if (auto applied = controller_.apply(settings); !applied) return applied.error();
+  if (motion_ != nullptr) motion_->look_at_settings();
   return controller_json(settings);
 }
 

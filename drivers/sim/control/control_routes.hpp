@@ -6,6 +6,7 @@
 
 #include "drivers/sim/control/live_world.hpp"
 #include "drivers/sim/controller/controller_server.hpp"
+#include "drivers/sim/controller/motion_server.hpp"
 #include "drivers/sim/model/fields.hpp"
 
 namespace calibrd::sim {
@@ -25,7 +26,9 @@ struct ControlResponse {
 /// One thread: that of the controller server.
 class ControlRoutes {
  public:
-  ControlRoutes(LiveWorld& world, ControllerServer& controller) : world_(world), controller_(controller) {}
+  /// Without a motion port `motion` is null.
+  ControlRoutes(LiveWorld& world, ControllerServer& controller, MotionServer* motion = nullptr)
+      : world_(world), controller_(controller), motion_(motion) {}
 
   ControlResponse handle(const ControlRequest& request);
 
@@ -50,6 +53,7 @@ class ControlRoutes {
 
   LiveWorld& world_;
   ControllerServer& controller_;
+  MotionServer* motion_;
 };
 
 }  // namespace calibrd::sim

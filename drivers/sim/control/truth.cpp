@@ -18,7 +18,6 @@ json::array joints_json(const Joints& joints, std::size_t count) {
 }
 
 json::object sensor_json(const SensorState& sensor) {
-  constexpr const char* kModes[] = {"normal", "silent", "hanging", "unplugged"};
   return {{"id", sensor.id.data()},
           {"T_base_sensor", to_json(sensor.T_base_sensor.pose())},
           {"camera", camera_json(sensor.camera)},
@@ -26,7 +25,7 @@ json::object sensor_json(const SensorState& sensor) {
           {"latency_s", sensor.latency_s},
           {"depth_errors", depth_errors_json(sensor.depth)},
           {"infrared", infrared_errors_json(sensor.infrared)},
-          {"mode", kModes[static_cast<int>(sensor.mode)]},
+          {"mode", kSensorModes[static_cast<int>(sensor.mode)]},
           {"crashes", sensor.crashes},
           {"powered_ns", sensor.powered_ns}};
 }

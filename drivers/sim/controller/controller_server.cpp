@@ -18,6 +18,8 @@ struct ControllerServer::Client {
   explicit Client(tcp::socket accepted) : socket(std::move(accepted)) {}
   tcp::socket socket;
   std::deque<Bytes> queue;  // the front is being sent
+  std::optional<RtdeSession> session;
+  std::array<std::uint8_t, 512> inbox{};
 };
 
 ControllerServer::ControllerServer(asio::io_context& io, WorldSource world,
@@ -51,6 +53,7 @@ Status ControllerServer::open_port() {
                      "controller port " + std::to_string(port_) + " (" + failed.message() + ")");
   }
   port_ = acceptor_.local_endpoint().port();
+  started_ns_ = monotonic_ns();
   accept_next();
   return Done{};
 }
@@ -72,10 +75,25 @@ void ControllerServer::admit(tcp::socket socket) {
     (*slot)->socket.close(ignored);
   }
   *slot = std::make_shared<Client>(std::move(socket));
+  if (settings_.protocol != ControllerSettings::Protocol::rtde) return;
+  (*slot)->session.emplace();
+  read_next(*slot);
+}
+
+void ControllerServer::read_next(const std::shared_ptr<Client>& client) {
+  client->socket.async_read_some(asio::buffer(client->inbox), [this, client](boost::system::error_code failed,
+                                                                             std::size_t size) {
+    if (failed) return forget(client);
+    const bool deaf = settings_.mode == ControllerSettings::Mode::silent;
+    auto replies = deaf ? Bytes() : client->session->take(std::span(client->inbox).first(size), settings_);
+    if (!replies) return forget(client);
+    if (!replies->empty()) enqueue(client, {*std::move(replies)});
+    read_next(client);
+  });
 }
 
 void ControllerServer::wait_for_cycle() {
-  timer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / settings_.rate_hz)));
+  timer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / cycle_hz())));
   timer_.async_wait([this](boost::system::error_code failed) {
     if (failed == asio::error::operation_aborted) return;
     cycle();
@@ -83,23 +101,50 @@ void ControllerServer::wait_for_cycle() {
   });
 }
 
+double ControllerServer::cycle_hz() const {
+  double fastest_hz = 0;
+  for (const auto& client : slots_)
+    if (client && client->session) fastest_hz = std::max(fastest_hz, client->session->frequency_hz());
+  return fastest_hz > 0 ? fastest_hz : settings_.rate_hz;
+}
+
 void ControllerServer::cycle() {
-  const auto sends = controller_cycle(world_(), settings_, frozen_, monotonic_ns());
+  const std::int64_t now_ns = monotonic_ns();
+  std::vector<Bytes> sends;
+  RtdeState state;
+  if (settings_.protocol == ControllerSettings::Protocol::rtde)
+    state = rtde_state(world_(), settings_, frozen_, now_ns, started_ns_);
+  else
+    sends = controller_cycle(world_(), settings_, frozen_, now_ns, cycles_++);
   for (auto& client : slots_) {
     // Who does not take the last cycle's bytes gets no more on top: a real server would block in send().
-    if (!client || !client->queue.empty() || sends.empty()) continue;
-    client->queue.assign(sends.begin(), sends.end());
-    send_next(client);
+    if (!client || !client->queue.empty()) continue;
+    if (!client->session) {
+      enqueue(client, sends);
+    } else if (settings_.mode != ControllerSettings::Mode::silent) {
+      if (Bytes data = client->session->data(state, settings_); !data.empty())
+        enqueue(client, {std::move(data)});
+    }
   }
+}
+
+void ControllerServer::enqueue(const std::shared_ptr<Client>& client, std::vector<Bytes> sends) {
+  if (sends.empty()) return;
+  const bool idle = client->queue.empty();
+  std::move(sends.begin(), sends.end(), std::back_inserter(client->queue));
+  if (idle) send_next(client);
+}
+
+void ControllerServer::forget(const std::shared_ptr<Client>& client) {
+  boost::system::error_code ignored;
+  client->socket.close(ignored);
+  std::replace(slots_.begin(), slots_.end(), client, std::shared_ptr<Client>());
 }
 
 void ControllerServer::send_next(const std::shared_ptr<Client>& client) {
   asio::async_write(client->socket, asio::buffer(client->queue.front()),
                     [this, client](boost::system::error_code failed, std::size_t) {
-                      if (failed) {
-                        std::replace(slots_.begin(), slots_.end(), client, std::shared_ptr<Client>());
-                        return;
-                      }
+                      if (failed) return forget(client);
                       client->queue.pop_front();
                       if (!client->queue.empty()) send_next(client);
                     });
@@ -108,9 +153,12 @@ void ControllerServer::send_next(const std::shared_ptr<Client>& client) {
 Status ControllerServer::apply(const ControllerSettings& settings) {
   using Mode = ControllerSettings::Mode;
   if (settings.mode == Mode::frozen && settings_.mode != Mode::frozen)
-    frozen_ = reported_joints(world_(), settings_, monotonic_ns());
+    frozen_ = {reported_joints(world_(), settings_, monotonic_ns()), monotonic_ns()};
   const bool opens = settings.mode != Mode::refuse && !acceptor_.is_open();
+  using Protocol = ControllerSettings::Protocol;
+  const bool other_manners = (settings.protocol == Protocol::rtde) != (settings_.protocol == Protocol::rtde);
   settings_ = settings;
+  if (other_manners) drop_clients(Farewell::fin);
   if (settings.mode == Mode::refuse) {
     boost::system::error_code ignored;
     acceptor_.close(ignored);

@@ -4,17 +4,22 @@
 
 #include <bit>
 
+#include "drivers/sim/controller/motion_messages.hpp"
+
 namespace calibrd::sim {
 namespace {
 
-constexpr std::int32_t kJointPosition = 10, kStatus = 13, kJointFeedback = 15, kJointFeedbackEx = 2017;
-constexpr std::int32_t kTopic = 1, kNotAReply = 0;
+constexpr std::int32_t kJointPosition = 10, kStatus = 13, kJointFeedback = 15, kJointFeedbackEx = 2017,
+                       kMotionReply = 2002;
+constexpr std::int32_t kTopic = 1, kServiceReply = 3, kNotAReply = 0, kReplySuccess = 1;
 constexpr std::size_t kExRecords = 4;
 
 class Message {
  public:
-  Message(ByteOrder order, std::int32_t type) : order_(order) {
-    for (std::int32_t field : {0, type, kTopic, kNotAReply}) integer(field);
+  Message(ByteOrder order, std::int32_t type, std::int32_t comm_type = kTopic,
+          std::int32_t reply_code = kNotAReply)
+      : order_(order) {
+    for (std::int32_t field : {0, type, comm_type, reply_code}) integer(field);
   }
 
   void integer(std::int32_t value) { word(static_cast<std::uint32_t>(value)); }
@@ -80,6 +85,14 @@ Bytes status_message(ByteOrder order, const StatusRecord& status) {
   for (std::int32_t field : {status.drives_powered, status.e_stopped, status.error_code, status.in_error,
                              status.in_motion, status.mode, status.motion_possible})
     message.integer(field);
+  return message.finish();
+}
+
+Bytes motion_reply_message(ByteOrder order, const MotionReplyRecord& reply) {
+  Message message(order, kMotionReply, kServiceReply, kReplySuccess);
+  for (std::int32_t field : {reply.group, reply.sequence, reply.command, reply.result, reply.subcode})
+    message.integer(field);
+  message.reals({});
   return message.finish();
 }
 

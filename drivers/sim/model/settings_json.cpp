@@ -119,14 +119,26 @@ json::object camera_json(const CameraParameters& c) {
 
 void read_controller(Fields& fields, ControllerSettings& settings) {
   int mode = static_cast<int>(settings.mode), protocol = static_cast<int>(settings.protocol);
-  int order = settings.big_endian;
+  int order = settings.big_endian, pendant = settings.automatic;
   fields.choice("mode", {"normal", "frozen", "status_only", "silent", "refuse"}, mode);
-  fields.choice("protocol", {"motoros", "joint_position"}, protocol);
+  fields.choice("protocol", {"motoros", "joint_position", "rtde"}, protocol);
   fields.choice("byte_order", {"little", "big"}, order);
   fields.flag("send_velocity", settings.send_velocity);
   fields.integer("groups", settings.groups, 1, 4);
   fields.number("rate_hz", settings.rate_hz, 0.1, 1000);
   fields.number("latency_s", settings.latency_s, 0, 10);
+  fields.integer("status_every", settings.status_every, 1, 1000);
+  fields.integer("send_bytes", settings.send_bytes, 0, 1000);
+  fields.flag("j3_from_horizontal", settings.j3_from_horizontal);
+  fields.integer("rtde_protocol", settings.rtde_protocol, 1, 2);
+  fields.flag("rtde_texts", settings.rtde_texts);
+  fields.text("rtde_missing", settings.rtde_missing);
+  fields.flag("drives_powered", settings.drives_powered);
+  fields.flag("e_stopped", settings.e_stopped);
+  fields.flag("in_error", settings.in_error);
+  fields.choice("pendant", {"teach", "play"}, pendant);
+  fields.flag("motion_possible", settings.motion_possible);
+  settings.automatic = pendant;
   settings.mode = static_cast<ControllerSettings::Mode>(mode);
   settings.protocol = static_cast<ControllerSettings::Protocol>(protocol);
   settings.big_endian = order;
@@ -134,13 +146,25 @@ void read_controller(Fields& fields, ControllerSettings& settings) {
 
 json::object controller_json(const ControllerSettings& s) {
   constexpr const char* kModes[] = {"normal", "frozen", "status_only", "silent", "refuse"};
+  constexpr const char* kProtocols[] = {"motoros", "joint_position", "rtde"};
   return {{"mode", kModes[static_cast<int>(s.mode)]},
-          {"protocol", s.protocol == ControllerSettings::Protocol::motoros ? "motoros" : "joint_position"},
+          {"protocol", kProtocols[static_cast<int>(s.protocol)]},
           {"byte_order", s.big_endian != 0 ? "big" : "little"},
           {"send_velocity", s.send_velocity != 0},
           {"groups", s.groups},
           {"rate_hz", s.rate_hz},
-          {"latency_s", s.latency_s}};
+          {"latency_s", s.latency_s},
+          {"status_every", s.status_every},
+          {"send_bytes", s.send_bytes},
+          {"j3_from_horizontal", s.j3_from_horizontal != 0},
+          {"rtde_protocol", s.rtde_protocol},
+          {"rtde_texts", s.rtde_texts != 0},
+          {"rtde_missing", s.rtde_missing},
+          {"drives_powered", s.drives_powered != 0},
+          {"e_stopped", s.e_stopped != 0},
+          {"in_error", s.in_error != 0},
+          {"pendant", s.automatic != 0 ? "play" : "teach"},
+          {"motion_possible", s.motion_possible != 0}};
 }
 
 void read_person(Fields& fields, PersonState& person, std::int64_t now_ns) {

@@ -110,6 +110,16 @@ void SimDevice::expose(const WorldState& state, std::int64_t exposure_ns, std::i
   model_->expose(state, state.sensors[sensor_], exposure_ns, seed, images.depth, images.infrared);
 }
 
+/// Each moment of a second is rendered once while frames are replayed, and shown again in the next.
+const SimDevice::Images& SimDevice::images_of(const WorldState& state, std::int64_t exposure_ns,
+                                              std::int64_t frame) {
+  const bool replays = state.sensors[sensor_].mode == SensorMode::replay;
+  if (!replays) replayed_ = {};
+  Images& images = replays ? replayed_[static_cast<std::size_t>(frame) % replayed_.size()] : newest_;
+  if (!replays || images.depth.empty()) expose(state, exposure_ns, frame, images);
+  return images;
+}
+
 void SimDevice::deliver(const Images& images, std::int64_t exposure_ns, std::int64_t frame) {
   const std::lock_guard lock(mutex_);
   for (SimStream* stream : streams_) {
@@ -125,15 +135,15 @@ void SimDevice::run() {
   const auto frame_after = [&](std::int64_t ns) {
     return static_cast<std::int64_t>(static_cast<double>(ns) / period_ns) + 1;
   };
-  Images images;
   std::int64_t frame = frame_after(monotonic_ns());
   first_frame_ = frame - 1;
   for (;;) {
     const auto exposure_ns = static_cast<std::int64_t>(static_cast<double>(frame) * period_ns);
     if (!wait_until(exposure_ns)) return;
     const auto state = world_now();
-    if (state && state->sensors[sensor_].mode == SensorMode::normal && any_started()) {
-      expose(*state, exposure_ns, frame, images);
+    const auto mode = state ? state->sensors[sensor_].mode : SensorMode::silent;
+    if ((mode == SensorMode::normal || mode == SensorMode::replay) && any_started()) {
+      const Images& images = images_of(*state, exposure_ns, frame);
       if (!wait_until(exposure_ns + std::llround(state->sensors[sensor_].latency_s * 1e9))) return;
       deliver(images, exposure_ns, frame);
     }

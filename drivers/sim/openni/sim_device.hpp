@@ -44,6 +44,7 @@ class SimDevice final : public oni::driver::DeviceBase {
   bool wait_until(std::int64_t time_ns);
   std::optional<WorldState> world_now() const;
   void expose(const WorldState& state, std::int64_t exposure_ns, std::int64_t frame, Images& images);
+  const Images& images_of(const WorldState& state, std::int64_t exposure_ns, std::int64_t frame);
   void deliver(const Images& images, std::int64_t exposure_ns, std::int64_t frame);
 
   const std::shared_ptr<const WorldView> world_;
@@ -54,6 +55,8 @@ class SimDevice final : public oni::driver::DeviceBase {
   std::array<OniSensorInfo, 2> infos_;
   std::unique_ptr<SensorModel> model_;  // the thread's
   std::int64_t first_frame_ = 0;        // the thread's
+  Images newest_;                       // the thread's
+  std::array<Images, 30> replayed_;     // the thread's; empty: not rendered yet
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -46,6 +46,13 @@ double MotionProgram::cycle_s() const {
   return sum;
 }
 
+bool MotionProgram::is_over(double program_s) const {
+  if (loop_from + 1 < posture_count) return false;
+  double end_s = 0;
+  for (int i = 0; i < loop_from; ++i) end_s += duration_s(i, after(i)) + hold_s;
+  return program_s >= end_s;
+}
+
 Joints MotionProgram::at(double program_s) const {
   if (posture_count == 0) return {};
   const double cycle = cycle_s();
@@ -89,6 +96,7 @@ double MotionClock::time_at(std::int64_t now_ns) const {
 }
 
 Joints MotionPlan::positions_at(std::int64_t now_ns) const {
+  if (commanded.count > 0) return commanded.at(now_ns);
   return now_ns < switch_ns ? current.at(now_ns) : next.at(now_ns);
 }
 
@@ -107,9 +115,22 @@ void MotionPlan::place(const Joints& posture, std::int64_t now_ns) {
   next.program.postures[0] = posture;
   current = next;
   switch_ns = now_ns;
+  commanded = {};
+}
+
+bool MotionPlan::is_running(std::int64_t now_ns) const {
+  if (commanded.count > 0) return false;
+  const bool rests = next.clock.rate_to == 0 && next.clock.rate_at(now_ns) == 0;
+  return now_ns < switch_ns || (!rests && !next.program.is_over(next.clock.time_at(now_ns)));
+}
+
+/// Where the motion port has left the robot, its own programs begin.
+void MotionPlan::end_commands(std::int64_t now_ns) {
+  if (commanded.count > 0) place(commanded.at(now_ns), now_ns);
 }
 
 void MotionPlan::set_rate(double rate, std::int64_t now_ns) {
+  end_commands(now_ns);
   const std::int64_t from_ns = std::max(now_ns, switch_ns);
   MotionClock& clock = next.clock;
   clock = {from_ns, clock.time_at(from_ns), clock.rate_at(from_ns), rate, kStopRamp_s};
@@ -117,6 +138,7 @@ void MotionPlan::set_rate(double rate, std::int64_t now_ns) {
 
 void MotionPlan::visit(std::span<const Joints> postures, Profile profile, double speed_rad_s, double hold_s,
                        std::int64_t now_ns) {
+  end_commands(now_ns);
   if (now_ns >= switch_ns) {
     set_rate(0, now_ns);
     current = next;

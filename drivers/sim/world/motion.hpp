@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <span>
 
+#include "drivers/sim/world/commanded_motion.hpp"
+#include "drivers/sim/world/joints.hpp"
+
 namespace calibrd::sim {
 
-inline constexpr int kMaxJoints = 16;
 inline constexpr int kMaxPostures = 64;
-
-/// Joint values, rad or m; entries past the robot's joint count are 0.
-using Joints = std::array<double, kMaxJoints>;
 
 enum class Profile : std::int32_t {
   minimum_jerk,    ///< quintic: velocity and acceleration vanish at both ends
@@ -29,6 +28,9 @@ struct MotionProgram {
 
   /// Where the robot is, `program_s` seconds after the start (>= 0).
   Joints at(double program_s) const;
+
+  /// It is where it stays: one posture in the end, and that is reached.
+  bool is_over(double program_s) const;
 
  private:
   double duration_s(int from, int to) const;
@@ -61,6 +63,7 @@ struct MotionPlan {
   Motion current;
   Motion next;
   std::int64_t switch_ns = 0;
+  CommandedMotion commanded;  ///< goes before the others while it has points
 
   /// True joint positions at a time of CLOCK_MONOTONIC.
   Joints positions_at(std::int64_t now_ns) const;
@@ -75,6 +78,14 @@ struct MotionPlan {
   void set_rate(double rate, std::int64_t now_ns);
   /// Puts the robot at rest at `posture`, at once: for the start of the world.
   void place(const Joints& posture, std::int64_t now_ns);
+
+  /// A program of its own moves the robot, or will: the motion port has no say then.
+  bool is_running(std::int64_t now_ns) const;
+  /// Hands the robot, which must not be running, to the motion port.
+  void take_commands(std::int64_t now_ns) { commanded.begin(positions_at(now_ns), now_ns); }
+
+ private:
+  void end_commands(std::int64_t now_ns);
 };
 
 }  // namespace calibrd::sim

@@ -10,7 +10,7 @@
 
 namespace calibrd::sim {
 
-inline constexpr int kMaxSensors = 4;
+inline constexpr int kMaxSensors = 8;
 inline constexpr int kMaxObjects = 64;
 inline constexpr int kMaxName = 48;
 
@@ -66,7 +66,14 @@ struct InfraredErrors {
   static InfraredErrors kinect2();
 };
 
-enum class SensorMode : std::int32_t { normal, silent, hanging, unplugged };
+enum class SensorMode : std::int32_t {
+  normal,
+  silent,
+  hanging,
+  unplugged,
+  replay  ///< the frames of some moments again and again: for who measures what frames cost but their making
+};
+inline constexpr const char* kSensorModes[] = {"normal", "silent", "hanging", "unplugged", "replay"};
 
 struct SensorState {
   std::array<char, kMaxName> id{};

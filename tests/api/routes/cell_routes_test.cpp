@@ -20,10 +20,18 @@ TEST_F(CellRoutes, UnknownPathIs404AndWrongMethodIs405WithAllow) {
 
 TEST_F(CellRoutes, SensorsAndOneSensor) {
   cell_.sensor_report.views.refused = {{"moving", 12}};
+  cell_.sensor_report.views.timing_error_m = 0.0002;
+  cell_.sensor_report.time_offset = {true,       true, Seconds(0.031), Seconds(0.0008), Seconds(0.001),
+                                     Seconds(2), ""};
   EXPECT_EQ(get("/api/v1/sensors").status, 200);
   EXPECT_EQ(body().at("sensors").as_array().size(), 1U);
   EXPECT_EQ(get("/api/v1/sensors/kinect2").status, 200);
   EXPECT_EQ(body().at("views").at("frames_refused").at("moving"), 12);
+  EXPECT_EQ(body().at("views").at("timing_error_m"), 0.0002);
+  EXPECT_EQ(body().at("time_offset").at("source"), "estimated");
+  EXPECT_EQ(body().at("time_offset").at("value_s"), 0.031);
+  EXPECT_EQ(body().at("time_offset").at("sigma_s"), 0.0008);
+  EXPECT_TRUE(body().at("time_offset").at("reason").is_null());
   EXPECT_EQ(get("/api/v1/sensors/none").status, 404);
 }
 

@@ -141,5 +141,34 @@ TEST(JointMapping, NumbersThatMakeNoSenseAreRefused) {
   refuse([=](auto& entry) { entry.coupling = {{0, nan}}; });
 }
 
+TEST(JointMapping, TheWayBackGivesWhatTheControllerSends) {
+  const std::vector<std::string> joints{"a", "b"};
+  JointMappingConfig config;
+  config.joints = {{.joint = "a", .axis = 2, .sign = -1, .offset_rad = 0.5, .coupling = {}},
+                   {.joint = "b", .axis = 0, .coupling = {}}};
+  const auto mapping = JointMapping::make(config, joints);
+  ASSERT_TRUE(mapping) << mapping.error().message();
+  const std::vector<double> controller{0.1, 7, 0.3, 8};
+  const auto model = *mapping->positions(controller);
+  const auto back = mapping->controller_values(model, {0, 7, 0, 8});
+  ASSERT_TRUE(back) << back.error().message();
+  for (std::size_t i = 0; i < controller.size(); ++i) EXPECT_DOUBLE_EQ((*back)[i], controller[i]);
+}
+
+TEST(JointMapping, ThereIsNoWayBackOverScaledOrCoupledAxes) {
+  const std::vector<std::string> joints{"a", "b"};
+  JointMappingConfig scaled;
+  scaled.joints = {{.joint = "a", .axis = 0, .scale = 2, .coupling = {}},
+                   {.joint = "b", .axis = 1, .coupling = {}}};
+  auto coupled = scaled;
+  coupled.joints[0].scale = 1;
+  coupled.joints[1].coupling = {{0, 1.0}};
+  for (const auto& config : {scaled, coupled}) {
+    const auto back = JointMapping::make(config, joints)->controller_values(std::vector{0.1, 0.2}, {0, 0});
+    ASSERT_FALSE(back);
+    EXPECT_EQ(back.error().code, JointMappingError::not_invertible);
+  }
+}
+
 }  // namespace
 }  // namespace calibrd

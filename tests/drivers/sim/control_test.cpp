@@ -129,6 +129,20 @@ TEST_F(Control, JointZerosShowInWhatIsReported) {
               0.01, 1e-12);
 }
 
+TEST_F(Control, ControllerTakesTheMannersOfOtherMakes) {
+  accepted("PUT", "/controller", R"({"protocol": "rtde", "rtde_protocol": 1, "rtde_missing": "actual_qd"})");
+  EXPECT_EQ(truth().at("controller").at("protocol").as_string(), "rtde");
+  EXPECT_EQ(controller_.settings().rtde_protocol, 1);
+  EXPECT_EQ(controller_.settings().rtde_missing, "actual_qd");
+  accepted(
+      "PUT", "/controller",
+      R"({"protocol": "joint_position", "status_every": 11, "send_bytes": 4, "j3_from_horizontal": true})");
+  EXPECT_EQ(controller_.settings().protocol, ControllerSettings::Protocol::joint_position);
+  EXPECT_EQ(controller_.settings().status_every, 11);
+  EXPECT_EQ(controller_.settings().send_bytes, 4);
+  EXPECT_EQ(truth().at("controller").at("j3_from_horizontal").as_bool(), true);
+}
+
 TEST_F(Control, ControllerIsSetAndItsClientsDropped) {
   accepted("PUT", "/controller", R"({"mode": "frozen", "byte_order": "little", "latency_s": 0.2})");
   EXPECT_EQ(truth().at("controller").at("mode").as_string(), "frozen");

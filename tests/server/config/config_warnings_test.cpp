@@ -33,5 +33,16 @@ TEST(ConfigWarnings, NoDistortionAtAllLooksLikeADefault) {
   EXPECT_EQ(warnings[0].find("sensors.eye: distortion"), 0U) << warnings[0];
 }
 
+TEST(ConfigWarnings, MotionThatAnybodyOnTheNetworkCanAskForIsNamed) {
+  auto config = with_camera(254.9, 205.4, 0.09);
+  config.motion.enabled = true;
+  EXPECT_TRUE(config_warnings(config).empty());
+  config.server.address = "0.0.0.0";
+  ASSERT_EQ(config_warnings(config).size(), 1U);
+  EXPECT_EQ(config_warnings(config)[0].find("motion.enabled"), 0U);
+  config.motion.enabled = false;
+  EXPECT_TRUE(config_warnings(config).empty());
+}
+
 }  // namespace
 }  // namespace calibrd

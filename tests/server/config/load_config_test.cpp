@@ -47,6 +47,23 @@ TEST_F(LoadConfig, TakesDefaultsForWhatTheFileLeavesOut) {
   EXPECT_EQ(loaded->config.robot.port, 50241);
 }
 
+TEST_F(LoadConfig, PortAndJointsThatNobodySetAreThoseOfTheDriver) {
+  const auto rtde = std::string(kSmallest) + "driver = \"ur_rtde\"\n";
+  const auto loaded = load(rtde);
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  EXPECT_EQ(loaded->config.robot.port, 30004);
+  EXPECT_EQ(loaded->config.robot.joint_count, 6);
+  const auto chosen = load(rtde, {"CALIBRD_ROBOT__PORT=31004"}, {"robot.joint_count=5"});
+  ASSERT_TRUE(chosen) << chosen.error().message();
+  EXPECT_EQ(chosen->config.robot.port, 31004);
+  EXPECT_EQ(chosen->config.robot.joint_count, 5);
+}
+
+TEST_F(LoadConfig, AnUnknownDriverIsRefusedWithTheNearestName) {
+  const auto text = failure(std::string(kSmallest) + "driver = \"ur_rtd\"\n");
+  EXPECT_NE(text.find("did you mean 'ur_rtde'"), std::string::npos) << text;
+}
+
 TEST_F(LoadConfig, PathsAreRelativeToTheFile) {
   const auto loaded = load(kSmallest);
   ASSERT_TRUE(loaded);
@@ -202,6 +219,32 @@ TEST_F(LoadConfig, SensorIdMustFitAUrl) {
   EXPECT_NE(failure(std::string(kSmallest) + "[sensors.\"a/b\"]\nfx = 1\nfy = 1\ncx = 1\ncy = 1\n")
                 .find("an id has"),
             std::string::npos);
+}
+
+TEST_F(LoadConfig, MotionIsOffSlowAndCannotBeMadeFast) {
+  const auto loaded = load(kSmallest);
+  ASSERT_TRUE(loaded);
+  EXPECT_FALSE(loaded->config.motion.enabled);
+  EXPECT_EQ(loaded->config.motion.max_speed_deg_s, 5);
+  for (const char* line : {"max_speed_deg_s = 20.1", "max_speed_deg_s = 0", "max_acceleration_deg_s2 = 61",
+                           "path_tolerance_deg = 6", "port = 0"})
+    EXPECT_NE(failure(std::string(kSmallest) + "[motion]\n" + line + "\n").find("cell.toml:5: motion."),
+              std::string::npos)
+        << line;
+}
+
+TEST_F(LoadConfig, RoutesAreListsOfPostures) {
+  const auto routes = std::string(kSmallest) + "[motion.routes.tour]\n";
+  const auto loaded = load(routes + "postures_deg = [[0, 20.5], [10, -25]]\n");
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  EXPECT_EQ(loaded->config.motion.routes.at("tour").postures_deg,
+            (std::vector<std::vector<double>>{{0, 20.5}, {10, -25}}));
+  for (const char* value : {"[]", "[[]]", "[0, 20]", "[[0, \"a\"]]", "[[0, 1000]]", "7"})
+    EXPECT_NE(failure(routes + "postures_deg = " + value + "\n").find("motion.routes.tour.postures_deg"),
+              std::string::npos)
+        << value;
+  EXPECT_NE(failure(routes).find("motion.routes.tour.postures_deg"), std::string::npos)
+      << "a route without postures";
 }
 
 }  // namespace

@@ -70,16 +70,62 @@ TEST(Conversions, MirrorReachesSensorAndCell) {
   EXPECT_TRUE(sensor_settings("eye", sensor).stream.mirror);
 }
 
+TEST(Conversions, KeysOfTimeReachTheCell) {
+  Config config;
+  SensorConfig sensor;
+  EXPECT_TRUE(sensor_setup("eye", sensor).estimates_time_offset);
+  EXPECT_TRUE(cell_settings(config, "").gate.timed_views);  // for checks
+  EXPECT_FALSE(cell_settings(config, "").jobs.collector.moving_views);
+  EXPECT_TRUE(cell_settings(config, "").gate.trust_in_motion);
+  sensor.time_offset = "off";
+  config.calibration.views = "still_or_timed";
+  config.robot.trust_in_motion = false;
+  EXPECT_FALSE(sensor_setup("eye", sensor).estimates_time_offset);
+  EXPECT_TRUE(cell_settings(config, "").jobs.collector.moving_views);
+  EXPECT_FALSE(cell_settings(config, "").gate.trust_in_motion);
+}
+
 TEST(Conversions, LinkKeysReachTheClient) {
   RobotConfig robot;
   robot.host = std::string("h");
   robot.byte_order = std::string("little");
+  robot.driver = "ur_rtde";
+  robot.group = 2;
   robot.link.stale_after = Duration(111);
   robot.link.eviction_pause = Duration(222);
   const auto settings = link_settings(robot);
+  EXPECT_EQ(settings.driver, "ur_rtde");
+  EXPECT_EQ(settings.group, 2);
   EXPECT_EQ(settings.byte_order, simple_message::ByteOrder::little);
   EXPECT_EQ(settings.link.stale_after, Duration(111));
   EXPECT_EQ(settings.link.eviction_pause, Duration(222));
+}
+
+TEST(Conversions, MotionKeysReachTheClientAndTheCell) {
+  Config config;
+  config.robot.host = std::string("h");
+  config.robot.port = 50299;
+  config.robot.group = 1;
+  config.robot.link.stale_after = Duration(111);
+  config.motion.port = 50298;
+  config.motion.max_speed_deg_s = 18;
+  config.motion.max_acceleration_deg_s2 = 36;
+  config.motion.path_tolerance_deg = 1.8;
+  config.motion.hold = Duration(333);
+  config.motion.routes["tour"].postures_deg = {{180, -90}};
+  const auto client = motion_client_settings(config);
+  EXPECT_EQ(client.host, "h");
+  EXPECT_EQ(client.port, 50298);
+  EXPECT_EQ(client.state_port, 50299);
+  EXPECT_EQ(client.motion.group, 1);
+  EXPECT_NEAR(client.motion.limits.max_speed_rad_s, 0.1 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(client.motion.limits.max_acceleration_rad_s2, 0.2 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(client.motion.path.joint_rad, 0.01 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(client.motion.hold, Duration(333));
+  EXPECT_EQ(client.watch.stale_after, Duration(111));
+  const auto cell = motion_settings(config.motion);
+  EXPECT_FALSE(cell.enabled);
+  EXPECT_NEAR(cell.routes_rad.at("tour")[0][1], -0.5 * std::numbers::pi, 1e-12);
 }
 
 }  // namespace

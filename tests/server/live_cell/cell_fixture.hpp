@@ -141,6 +141,7 @@ class CellFixture : public ::testing::Test {
     frame.depth = {camera_.width, camera_.height, 0.001, std::vector<std::uint16_t>(pixels(), 1500)};
     frame.image = GreyImage{camera_.width, camera_.height, std::vector<std::uint16_t>(pixels(), 7)};
     frame.sequence = ++frames_sent_;
+    frame.depth.raw.back() = static_cast<std::uint16_t>(1400 + frames_sent_ % 100);  // a sensor's noise
     frame.stamp = Clock::now() - std::chrono::milliseconds(10);
     const std::lock_guard lock(feed_->mutex);
     feed_->frames.push_back(std::move(frame));

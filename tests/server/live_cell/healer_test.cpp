@@ -83,14 +83,14 @@ TEST_F(Healing, FailedQuickAttemptIsFollowedByAFullOneAndThenByAPause) {
 
 TEST_F(Healing, SensorThatIsKnockedAgainAndAgainIsNotCalibratedWithoutEnd) {
   begin(HealingMode::automatic);
-  for (int knock = 1; knock <= 2; ++knock) {
+  for (int knock = 1; knock <= 4; ++knock) {
     set_state(api::PoseState::drifted);
     ASSERT_TRUE(wait_for(static_cast<std::size_t>(knock)));
     end("c" + std::to_string(knock), api::JobStatus::succeeded);
     set_state(api::PoseState::calibrated);
   }
   set_state(api::PoseState::drifted);
-  EXPECT_FALSE(wait_for(3, 300ms));
+  EXPECT_FALSE(wait_for(5, 300ms));
 }
 
 TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {

@@ -34,6 +34,30 @@ TEST(PostureCollector, ComparesWithEveryPostureSeen) {
   EXPECT_EQ(collector.seen(), 2);
 }
 
+View moving_view(double joint) {
+  View v = view(joint);
+  v.is_moving = true;
+  return v;
+}
+
+TEST(PostureCollector, AMovingRobotsViewIsAPostureOfItsOwnWhereSuchAreTaken) {
+  PostureCollector collector({3, 0.17, 5, true});
+  collector.offer(moving_view(0));
+  collector.offer(moving_view(0.1));
+  collector.offer(moving_view(0.2));
+  EXPECT_EQ(collector.seen(), 2);
+  for (int i = 0; i < 5; ++i) collector.offer(view(0.6));
+  EXPECT_TRUE(collector.is_complete());
+  const auto views = collector.take_views();
+  EXPECT_TRUE(views[0].is_moving && views[1].is_moving && !views[2].is_moving);
+}
+
+TEST(PostureCollector, AMovingRobotsViewIsNotTakenOtherwise) {
+  PostureCollector collector({1, 0.17, 1});
+  collector.offer(moving_view(0));
+  EXPECT_EQ(collector.seen(), 0);
+}
+
 TEST(PostureCollector, AveragesSeveralFramesOfAPosture) {
   PostureCollector collector({1, 0.17, 3});
   collector.offer(view(0, 1000));

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "tests/core/registration/scene.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -101,6 +105,113 @@ TEST(ViewGate, RepeatedAndOlderFramesAreRefused) {
   EXPECT_EQ(gate.enter(4, at(133ms)), FrameVerdict::out_of_order);
   EXPECT_EQ(gate.enter(6, at(99ms)), FrameVerdict::out_of_order);
   EXPECT_EQ(gate.enter(7, at(133ms)), FrameVerdict::usable);
+}
+
+DepthImage picture(std::uint16_t value) { return {4, 3, 0.001, std::vector<std::uint16_t>(12, value)}; }
+
+TEST(ViewGate, AFrameWhosePixelsRepeatUnderANewStampIsRefused) {
+  ViewGate gate({});
+  const DepthImage one = picture(1500), other = picture(1501), dark = picture(0);
+  EXPECT_EQ(gate.enter(1, at(0ms), &one), FrameVerdict::usable);
+  EXPECT_EQ(gate.enter(2, at(33ms), &one), FrameVerdict::repeated);
+  EXPECT_EQ(gate.enter(3, at(66ms), &one), FrameVerdict::repeated);
+  EXPECT_EQ(gate.enter(4, at(100ms), &other), FrameVerdict::usable);
+  EXPECT_EQ(gate.enter(5, at(133ms), &dark), FrameVerdict::usable);
+  EXPECT_EQ(gate.enter(6, at(166ms), &dark), FrameVerdict::usable);  // covered: it says nothing either way
+}
+
+TEST(ViewGate, AFrameWhoseStampRepeatsIsRefused) {
+  ViewGate gate({});
+  EXPECT_EQ(gate.enter(1, at(33ms)), FrameVerdict::usable);
+  EXPECT_EQ(gate.enter(2, at(33ms)), FrameVerdict::repeated);
+}
+
+/// Joints as joints() has them, and a status with each.
+JointHistory with_status(JointHistory history, bool in_motion) {
+  const auto states = history.states();
+  for (const auto& state : states) history.note_status(state.stamp, in_motion);
+  return history;
+}
+
+TEST(ViewGate, ARobotWhoseControllerSaysThatItMovesIsNotStill) {
+  const auto decision = judge(with_status(joints(300ms), true), 290ms, 300ms);
+  EXPECT_EQ(decision.verdict, FrameVerdict::moving);
+  EXPECT_FALSE(decision.positions_rad);  // joints that repeat all the while are in doubt
+  EXPECT_EQ(judge(with_status(joints(1000ms), false), 990ms, 1000ms).verdict, FrameVerdict::usable);
+}
+
+TEST(ViewGate, FrozenJointsGiveNoViewAlsoWhenTheRobotHasStopped) {
+  JointHistory history(10s);
+  for (auto t = 0ms; t <= 4000ms; t += 25ms) {
+    const double turn = 0.3 * std::chrono::duration<double>(std::min(t, 500ms)).count();
+    history.add({{turn, 0}, {}, 0, at(t)});
+    history.note_status(at(t), t < 2000ms);  // in truth it turns until 2000 ms
+  }
+  const auto decision = judge(history, 3990ms, 4000ms);
+  EXPECT_EQ(decision.verdict, FrameVerdict::joints_frozen);
+  EXPECT_FALSE(decision.positions_rad);
+  EXPECT_GT(std::string(reason_of(decision.verdict)).size(), 20U);
+}
+
+TEST(ViewGate, StatusThatGoesOnWithoutJointsIsNamed) {
+  JointHistory history = joints(1000ms);
+  for (auto t = 1000ms; t <= 2000ms; t += 25ms) history.note_status(at(t), false);
+  EXPECT_EQ(judge(history, 1990ms, 2000ms).verdict, FrameVerdict::joints_frozen);
+}
+
+/// The test arm turning at `speed_rad_s` about its first joint, faster and faster by `acceleration`.
+JointHistory turning(double speed_rad_s, double acceleration = 0) {
+  JointHistory history;
+  for (auto t = 0ms; t <= 1000ms; t += 25ms) {
+    const double s = std::chrono::duration<double>(t).count();
+    auto positions = test::postures(1).front();
+    positions[0] += speed_rad_s * s + 0.5 * acceleration * s * s;
+    history.add({positions, {}, 0, at(t)});
+  }
+  return history;
+}
+
+FrameDecision judge_timed(const JointHistory& history, double sigma_s, bool timed_views = true) {
+  ViewGateSettings settings;
+  settings.timed_views = timed_views;
+  ViewGate gate(settings, std::make_shared<const LinkReach>(test::test_arm()));
+  gate.set_offset(AppliedOffset{20ms, sigma_s});
+  EXPECT_EQ(gate.enter(1, at(910ms)), FrameVerdict::usable);
+  return gate.judge(history, at(1000ms));
+}
+
+TEST(ViewGate, AMovingRobotsFrameIsAViewWhereItsTimeIsKnownWellEnough) {
+  const auto decision = judge_timed(turning(0.2), 0.0005);
+  EXPECT_EQ(decision.verdict, FrameVerdict::timed);
+  ASSERT_TRUE(decision.positions_rad && decision.timing_error_m);
+  EXPECT_NEAR((*decision.positions_rad)[0], test::postures(1).front()[0] + 0.2 * 0.89, 1e-9);
+  EXPECT_GT(*decision.timing_error_m, 0.2 * 0.3 * 0.0005);  // points 0.3 m from the axis go with it
+  EXPECT_LT(*decision.timing_error_m, 0.2 * 1.5 * 0.0005);
+  EXPECT_EQ(judge_timed(turning(0.2), 0.0005, false).verdict, FrameVerdict::moving);
+  EXPECT_EQ(judge_timed(turning(0.2), 0.005).verdict, FrameVerdict::moving);
+  EXPECT_EQ(judge_timed(turning(2.0), 0.0005).verdict, FrameVerdict::moving);
+}
+
+TEST(ViewGate, FastAccelerationBetweenTwoMessagesIsCounted) {
+  const auto steady = judge_timed(turning(0.2), 1e-6), jerky = judge_timed(turning(0.2, 20), 1e-6);
+  ASSERT_TRUE(steady.timing_error_m && jerky.timing_error_m);
+  EXPECT_LT(*steady.timing_error_m, 0.05e-3);
+  EXPECT_GT(*jerky.timing_error_m, 0.5e-3);
+}
+
+TEST(ViewGate, OldJointsThatComeInABurstAreNoView) {
+  JointHistory history = turning(0.2);
+  auto positions = history.newest()->positions_rad;
+  for (int i = 1; i <= 20; ++i) {  // of the half second before, a millisecond apart
+    positions[0] += 0.005;
+    history.add({positions, {}, 0, at(1000ms + std::chrono::milliseconds(i))});
+  }
+  ViewGateSettings settings;
+  settings.timed_views = true;
+  ViewGate gate(settings, std::make_shared<const LinkReach>(test::test_arm()));
+  gate.set_offset(AppliedOffset{0ms, 0.0003});
+  EXPECT_EQ(gate.enter(1, at(1010ms) + 500us), FrameVerdict::usable);
+  EXPECT_EQ(gate.judge(history, at(1020ms)).verdict, FrameVerdict::moving);
 }
 
 TEST(ViewGate, StillRobotIsRecognised) {

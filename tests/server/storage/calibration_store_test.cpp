@@ -8,6 +8,7 @@
 
 #include <fstream>
 
+#include "server/storage/background_text.hpp"
 #include "server/storage/schema.hpp"
 
 namespace calibrd {
@@ -112,6 +113,28 @@ TEST_F(Store, DriftIsKeptUntilTheCalibrationIsActivatedAgain) {
   EXPECT_TRUE(store_->activate(first, ""));
   EXPECT_FALSE((*store_->current("kinect2"))->drifted);
   EXPECT_EQ(run_raw("DELETE FROM drifts"), "drifts are kept");
+}
+
+TEST_F(Store, BackgroundOutlivesARestartAndTheFirstStays) {
+  finish(add("c1"));
+  EXPECT_TRUE(store_->add_background("c1", {0, 1.2345F, 6.5F, 7.0F}));
+  EXPECT_TRUE(store_->add_background("c1", {3, 3, 3, 3}));
+  open();
+  const auto kept = store_->background("c1");
+  ASSERT_TRUE(kept && *kept);
+  ASSERT_EQ((*kept)->size(), 4U);
+  EXPECT_EQ((*kept)->at(0), 0);
+  EXPECT_NEAR((*kept)->at(1), 1.2345, 1e-5);
+  EXPECT_NEAR((*kept)->at(2), 6.5, 1e-5);
+  EXPECT_EQ((*kept)->at(3), 0) << "too far to be kept";
+  EXPECT_FALSE(*store_->background("c2"));
+  EXPECT_EQ(run_raw("DELETE FROM backgrounds"), "backgrounds are kept");
+}
+
+TEST(BackgroundText, DamageIsNoBackground) {
+  EXPECT_EQ(background_text({0.0001F, 0}), "00010000");
+  for (const char* damaged : {"000", "00g0", "-001", "0x10"})
+    EXPECT_FALSE(parse_background(damaged)) << damaged;
 }
 
 TEST_F(Store, FileOfTheFirstSchemaIsBroughtUpToDate) {

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/live_cell/view_timing.hpp"
+
+#include <algorithm>
+
+namespace calibrd {
+namespace {
+
+double seconds_between(const JointState& a, const JointState& b) {
+  return std::chrono::duration<double>(b.stamp - a.stamp).count();
+}
+
+/// Of the fastest point, m/s².
+double acceleration(const LinkReach& reach, const JointState& a, const JointState& b, const JointState& c) {
+  const double ab = seconds_between(a, b), bc = seconds_between(b, c);
+  return reach.velocity_change_m_s(a.positions_rad, b.positions_rad, c.positions_rad, ab, bc) /
+         (0.5 * (ab + bc));
+}
+
+}  // namespace
+
+std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach& reach,
+                                     Clock::time_point exposed, double sigma_s) {
+  const auto& states = joints.states();
+  const auto after = std::ranges::lower_bound(states, exposed, {}, &JointState::stamp);
+  if (after == states.begin() || after == states.end()) return std::nullopt;
+  const auto before = std::prev(after);
+  const bool has_earlier = before != states.begin(), has_later = std::next(after) != states.end();
+  if (!has_earlier && !has_later) return std::nullopt;
+  double bend = 0;
+  if (has_earlier) bend = acceleration(reach, *std::prev(before), *before, *after);
+  if (has_later) bend = std::max(bend, acceleration(reach, *before, *after, *std::next(after)));
+  const double cycle_s = seconds_between(*before, *after);
+  const double speed = reach.farthest_m(before->positions_rad, after->positions_rad) / cycle_s;
+  return speed * sigma_s + bend * cycle_s * cycle_s / 8;
+}
+
+}  // namespace calibrd
