@@ -14,7 +14,7 @@ namespace {
 
 namespace json = boost::json;
 
-constexpr double kLeastPeak = 1;  // smaller ones say nothing of the tail
+constexpr double kLeastPeak = 0.1;  // smaller ones say nothing of the tail
 
 struct Block {
   std::size_t begin = 0, end = 0;

@@ -87,7 +87,7 @@ class BeforeAWall : public WatchedRoom {
 };
 
 TEST_F(BeforeAWall, AloneItIsNoEvidence) {
-  EXPECT_EQ(watch_for(2), DriftVerdict::no_evidence);
+  EXPECT_EQ(watch_for(6), DriftVerdict::no_evidence);
   EXPECT_FALSE(watch_.is_in_place());
 }
 
