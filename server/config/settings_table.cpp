@@ -148,6 +148,11 @@ void declare_sensors(std::vector<Setting>& table) {
       "k1, k2, p1, p2, k3 as OpenCV defines them. Left out it moved the pose by 5 mm, unseen.");
   key("depth_unit_um", &SensorConfig::depth_unit_um, one_of_numbers({1000, 100}), "µm",
       "Unit of the depth values to ask the device for; the other one is taken where it is not offered.");
+}
+
+void declare_sensors_time_and_place(std::vector<Setting>& table) {
+  SectionDeclarer<SensorConfig> key(
+      table, {"sensors", "*"}, [](Config& c, const Names& n) -> SensorConfig& { return c.sensors[n[0]]; });
   key("latency", &SensorConfig::latency, duration(0ms, 1s), "",
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
   key("time_offset", &SensorConfig::time_offset, one_of({"estimate", "off"}), "",
@@ -231,6 +236,7 @@ std::vector<Setting> build_table() {
   declare_joints(table);
   declare_coupling(table);
   declare_sensors(table);
+  declare_sensors_time_and_place(table);
   declare_workspace(table);
   declare_pose(table);
   declare_drift(table);
