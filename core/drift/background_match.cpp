@@ -191,7 +191,15 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
 void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
                                  BackgroundObservation& observation) {
   states_.assign(map_.cells().size(), CellState::unknown);
-  const auto offset = static_cast<float>(fit.solution[6]);
+  // An edge changes about as the plane before it in the picture does.
+  expected_change_m_.resize(map_.cells().size());
+  std::size_t next = 0;
+  for (const Row& row : rows_) {
+    const float change = row.slope.head<kParameters>().dot(fit.solution.cast<float>());
+    for (; next <= row.cell; ++next) expected_change_m_[next] = change;
+  }
+  for (; next < expected_change_m_.size(); ++next)
+    expected_change_m_[next] = next > 0 ? expected_change_m_[next - 1] : 0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BackgroundCell& known = map_.cells()[i];
     if (known.depth_m <= 0) continue;
@@ -201,7 +209,7 @@ void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit&
       state = CellState::robot;
     else if (depth_m_[i] <= 0)
       state = CellState::dark;
-    else if (const float change = depth_m_[i] - known.depth_m - offset; change < -gate)
+    else if (const float change = depth_m_[i] - known.depth_m - expected_change_m_[i]; change < -gate)
       state = CellState::nearer;
     else
       state = change > gate ? CellState::farther : CellState::same;
@@ -226,8 +234,8 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
   observation.common_share = found.common / static_cast<double>(found.used);
-  if (observation.has_evidence && std::abs(found.solution[6]) < kFarKernel_m)
-    last_offset_m_ = found.solution[6];
+  if (observation.has_evidence && std::abs(observation.known_offset_m()) < kFarKernel_m)
+    last_offset_m_ = observation.known_offset_m();
   return observation;
 }
 

@@ -28,6 +28,9 @@ struct BackgroundObservation {
   Matrix6d covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
+  /// Of that what can be relied on: before a single wall an offset looks like a shift.
+  double known_offset_m() const { return offset_sigma_m < kKnownOffset_m ? offset_change_m : 0; }
+  static constexpr double kKnownOffset_m = 0.003;
   double scatter = 1;       ///< residuals against what noise explains
   double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
   bool realigned = false;   ///< the background had to be searched: it lies far from where it should
@@ -93,6 +96,7 @@ class BackgroundMatcher {
   Information spurious_ = Information::Zero();  // information that is but noise of the planes' normals
   std::size_t clusters_ = 0;
   std::vector<float> depth_m_;
+  std::vector<float> expected_change_m_;  // of the depth, by the fit
   std::vector<CellState> states_;
   std::vector<float> whitened_;
   std::vector<double> pulls_;

@@ -52,7 +52,7 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
                          [](CellState state) -> std::uint8_t { return state == CellState::same ? 1 : 0; });
   auto depth_m = matcher_.depth_m();
   for (float& z : depth_m)
-    if (z > 0) z -= static_cast<float>(observation.offset_change_m);
+    if (z > 0) z -= static_cast<float>(observation.known_offset_m());
   map_.refine(depth_m, chosen);
 }
 
@@ -69,8 +69,11 @@ void DriftWatch::absorb(double now_s) {
 void DriftWatch::absorb_what_moved_as_one(double now_s) {
   if (moved_ || now_s - denied_s_ > kStillDenied_s || now_s - denied_since_s_ < kDenied_s) return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    chosen[i] = matcher_.states()[i] == CellState::same && scene_.mean_frames()[i] >= kLeastMeanFrames;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const CellState state = matcher_.states()[i];  // silhouettes have moved, too
+    const bool seen = state == CellState::same || state == CellState::nearer || state == CellState::farther;
+    chosen[i] = seen && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
+  }
   take(chosen);
   test_.reset();
   denied_since_s_ = now_s;

@@ -177,7 +177,7 @@ bool DriftWatch::robot_denies_the_shift(double now_s) const {
 void DriftWatch::follow_offset(const BackgroundObservation& observation, double now_s) {
   if (!observation.has_evidence || observation.realigned) return;
   const double newest = 1 / (kOffsetMean_s * settings_.shift.rate_hz);
-  offset_m_ += newest * (observation.offset_change_m - offset_m_);
+  offset_m_ += newest * (observation.known_offset_m() - offset_m_);
   offset_sigma_m_ = observation.offset_sigma_m * std::sqrt(newest);
   const double over = std::abs(offset_m_) - 3 * offset_sigma_m_;
   if (over < kBiasOff * settings_.depth_bias_m) bias_changed_ = false;
