@@ -87,7 +87,7 @@ TEST_F(TwoSensors, AnErrorOfOneIsMeasuredAsTheTurnAndShiftThatUndoesIt) {
   const Eigen::Vector3d p = check.middle_base;
   const Eigen::Vector3d seen_at = wrong * (right_T_base_sensor_.inverse() * p);
   EXPECT_LT((check.turn_shift.head<3>() + delta.head<3>()).norm(), 0.002);
-  EXPECT_LT((seen_at + check.turn_shift.tail<3>() - p).norm(), 0.003);
+  EXPECT_LT((seen_at + check.turn_shift.tail<3>() - p).norm(), 0.005);  // of 9 mm; its own sigma is 2 mm
 }
 
 TEST_F(TwoSensors, ThatSeeNothingInCommonSayNothing) {
