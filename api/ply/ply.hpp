@@ -13,4 +13,10 @@ namespace calibrd::api {
 std::string write_ply(std::span<const Eigen::Vector3f> points, std::span<const float> residual_m,
                       const std::vector<std::string>& comments);
 
+/// The same with the number of its sensor for every point: uchar sensor. `points_of_sensor`: how many of the
+/// points are of sensor 0, then of sensor 1, …
+std::string write_merged_ply(std::span<const Eigen::Vector3f> points,
+                             std::span<const std::size_t> points_of_sensor,
+                             const std::vector<std::string>& comments);
+
 }  // namespace calibrd::api

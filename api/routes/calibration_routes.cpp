@@ -21,6 +21,7 @@ namespace json = boost::json;
 constexpr int kMaxPostures = 50;
 constexpr int kMaxPage = 100;
 constexpr std::size_t kMaxIdempotencyKey = 128;
+const std::initializer_list<std::string> kCellKeys{"sensors", "method", "postures", "activate"};
 
 Result<Method> read_method(const json::object& body) {
   const auto text = read_text(body, "method", 32);
@@ -56,9 +57,10 @@ Result<std::string> read_idempotency_key(const Request& request) {
   return key;
 }
 
-Result<CalibrationRequest> read_calibration_request(const Request& request, const std::string& sensor_id) {
-  const auto body =
-      read_body(request.body, request.header("content-type"), {"method", "guess", "postures", "activate"});
+/// `known`: the keys that the body may hold.
+Result<CalibrationRequest> read_calibration_request(const Request& request, const std::string& sensor_id,
+                                                    std::initializer_list<std::string> known) {
+  const auto body = read_body(request.body, request.header("content-type"), known);
   if (!body) return body.error();
   const auto method = read_method(*body);
   if (!method) return method.error();
@@ -76,12 +78,54 @@ Result<CalibrationRequest> read_calibration_request(const Request& request, cons
 
 Response answer_start(const Request& request, const PathValues& values, CellService& service) {
   if (auto unknown = unknown_query(request, {})) return problem(*unknown);
-  const auto wanted = read_calibration_request(request, values[0]);
+  const auto wanted =
+      read_calibration_request(request, values[0], {"method", "guess", "postures", "activate"});
   if (!wanted) return problem(wanted.error());
   const auto started = service.start_calibration(*wanted);
   if (!started) return problem(started.error());
   auto response = json_response(202, calibration_json(*started, true));
   response.headers.emplace_back("Location", "/api/v1/calibrations/" + started->id);
+  response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
+/// Ids under "sensors"; none: all.
+Result<std::vector<std::string>> read_sensor_ids(const Request& request) {
+  const auto body = read_body(request.body, request.header("content-type"), kCellKeys);
+  if (!body) return body.error();
+  std::vector<std::string> ids;
+  const auto* list = body->if_contains("sensors");
+  if (!list || list->is_null()) return ids;
+  const auto wrong = fail(ApiError::bad_value, "sensors: a list of sensor ids is wanted, each once");
+  if (!list->is_array() || list->get_array().empty()) return wrong;
+  for (const auto& id : list->get_array()) {
+    const auto* text = id.if_string();
+    if (!text || std::ranges::find(ids, std::string(*text)) != ids.end()) return wrong;
+    ids.emplace_back(*text);
+  }
+  return ids;
+}
+
+Response answer_start_all(const Request& request, CellService& service) {
+  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+  const auto ids = read_sensor_ids(request);
+  if (!ids) return problem(ids.error());
+  const auto each = read_calibration_request(request, {}, kCellKeys);
+  if (!each) return problem(each.error());
+  const auto calibrations = service.start_calibrations({*ids, *each});
+  if (!calibrations) return problem(calibrations.error());
+  json::array started, refused;
+  for (const auto& calibration : calibrations->started) {
+    auto entry = calibration_json(calibration, false);
+    entry["location"] = "/api/v1/calibrations/" + calibration.id;
+    started.push_back(std::move(entry));
+  }
+  for (const auto& [id, error] : calibrations->refused)
+    refused.push_back({{"sensor", id},
+                       {"code", problem_entry(static_cast<ApiError>(error.code.value())).code},
+                       {"reason", error.message()}});
+  auto response =
+      json_response(202, json::object{{"calibrations", std::move(started)}, {"refused", std::move(refused)}});
   response.headers.emplace_back("Retry-After", "1");
   return response;
 }
@@ -137,6 +181,9 @@ void add_calibration_routes(Router& router, CellService& service) {
              [&service](const Request& request, const PathValues& values) {
                return answer_history(request, values, service);
              });
+  router.add(
+      "POST", "/api/v1/cell/calibrations", Cost::slow,
+      [&service](const Request& request, const PathValues&) { return answer_start_all(request, service); });
   const auto add_one = [&router](const char* method, const char* path, CalibrationCall call) {
     router.add(method, path, Cost::slow,
                [call = std::move(call)](const Request& request, const PathValues& values) {

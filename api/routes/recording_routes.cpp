@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <boost/json/object.hpp>
-#include <charconv>
 
 #include "api/json/strict_object.hpp"
 #include "api/ply/ply.hpp"
+#include "api/routes/header_numbers.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
 
@@ -42,30 +42,15 @@ Response answer_capture(const Request& request, const PathValues& values, CellSe
           std::move(archive->tar)};
 }
 
-std::string number(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
-std::string pose_numbers(const Pose& pose) {
-  std::string text;
-  for (int i = 0; i < 16; ++i) text.append(i == 0 ? "" : " ").append(number(pose.matrix()(i / 4, i % 4)));
-  return text;
-}
-
 /// What a cloud was made from, as name and value: comments of the file, and headers.
 std::vector<std::pair<std::string, std::string>> provenance(const Cloud& cloud) {
   std::vector<std::pair<std::string, std::string>> lines{{"Frame", cloud.frame}};
   if (cloud.joint_stamp_ns) lines.emplace_back("Joint-Stamp-Ns", std::to_string(*cloud.joint_stamp_ns));
-  if (!cloud.joint_positions_rad.empty()) {
-    std::string joints;
-    for (const double position : cloud.joint_positions_rad)
-      joints.append(joints.empty() ? "" : " ").append(number(position));
-    lines.emplace_back("Joint-Positions", joints);
-  }
+  if (!cloud.joint_positions_rad.empty())
+    lines.emplace_back("Joint-Positions", numbers_text(cloud.joint_positions_rad));
   if (cloud.frame_stamp_ns) lines.emplace_back("Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
   if (cloud.T_base_sensor) {
-    lines.emplace_back("T-Base-Sensor", pose_numbers(*cloud.T_base_sensor));
+    lines.emplace_back("T-Base-Sensor", pose_text(*cloud.T_base_sensor));
     lines.emplace_back("Pose-Valid", cloud.pose_valid ? "true" : "false");
   }
   return lines;

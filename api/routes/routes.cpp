@@ -15,6 +15,8 @@ Router make_routes(CellService& service) {
   add_next_posture_routes(router, service);
   add_recording_routes(router, service);
   add_motion_routes(router, service);
+  add_several_sensors_routes(router, service);
+  add_obstacle_routes(router, service);
   return router;
 }
 

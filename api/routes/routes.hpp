@@ -15,6 +15,8 @@ void add_sensor_routes(Router& router, CellService& service);
 void add_drift_routes(Router& router, CellService& service);
 void add_robot_routes(Router& router, CellService& service);
 void add_calibration_routes(Router& router, CellService& service);
+void add_several_sensors_routes(Router& router, CellService& service);
+void add_obstacle_routes(Router& router, CellService& service);
 void add_next_posture_routes(Router& router, CellService& service);
 void add_motion_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/service/cell_reports.hpp"
 #include "api/service/motion_reports.hpp"
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
@@ -50,6 +51,14 @@ class CellService {
   virtual MotionsReport motions() const = 0;                           ///< quick
   virtual Result<MotionReport> motion(std::string_view id) const = 0;  ///< quick
   virtual Result<MotionReport> stop_motion(std::string_view id) = 0;   ///< quick
+  /// What is neither robot nor remembered background. `sensor_id` empty: for all sensors.
+  virtual Result<ObstaclesReport> obstacles(const std::string& sensor_id) const = 0;
+  /// Every pair of sensors, compared by what both see of the cell.
+  virtual std::vector<SensorPair> cross_checks() const = 0;
+  virtual Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const = 0;
+  /// Starts a calibration of each sensor, so that one motion of the robot serves all. The error of the first
+  /// when none could be started.
+  virtual Result<CellCalibrations> start_calibrations(const CellCalibrationRequest& request) = 0;
 };
 
 }  // namespace calibrd::api

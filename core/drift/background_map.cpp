@@ -3,6 +3,7 @@
 #include "core/drift/background_map.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -16,11 +17,13 @@ constexpr float kSameSurface_m = 0.025F;
 /// Neighbours of a cell may lie this far off its plane, as a share of the depth and in m, or it is an edge.
 constexpr double kOffPlane = 0.004, kLeastOffPlane_m = 0.004;
 constexpr double kMinCosine = 0.2;
+constexpr int kPlaneReach = 2;  // cells to each side that a plane is fitted to
 constexpr int kMargin = 2;  // cells around the robot that may be robot: flying pixels, joints a moment off
 
-/// Mean of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts `values`.
-float agreed_depth(std::vector<float>& values) {
-  if (values.empty()) return 0;
+/// Mean and size of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts
+/// `values`.
+std::pair<float, std::size_t> agreed_depth(std::vector<float>& values) {
+  if (values.empty()) return {0, 0};
   std::ranges::sort(values);
   std::size_t best_begin = 0, best_count = 0;
   for (std::size_t begin = 0, end = 0; begin < values.size(); ++begin) {
@@ -30,10 +33,10 @@ float agreed_depth(std::vector<float>& values) {
       best_begin = begin;
     }
   }
-  if (2 * best_count <= values.size() && values.size() > 1) return 0;
+  if (2 * best_count <= values.size() && values.size() > 1) return {0, 0};
   float sum = 0;
   for (std::size_t i = best_begin; i < best_begin + best_count; ++i) sum += values[i];
-  return sum / static_cast<float>(best_count);
+  return {sum / static_cast<float>(best_count), best_count};
 }
 
 }  // namespace
@@ -49,7 +52,9 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
         const double z = views[v].depth.depth_m(kBackgroundStride * x, kBackgroundStride * y);
         if (z > 0) values.push_back(static_cast<float>(z));
       }
-      cells_[cell].depth_m = agreed_depth(values);
+      const auto [depth_m, count] = agreed_depth(values);
+      cells_[cell].depth_m = depth_m;
+      cells_[cell].frames = static_cast<float>(count);
     }
   }
   fit_planes();
@@ -57,7 +62,10 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
 
 void BackgroundMap::recall(std::span<const float> depth_m) {
   if (depth_m.size() != cells_.size()) return;
-  for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i].depth_m = depth_m[i];
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    cells_[i].depth_m = depth_m[i];
+    cells_[i].frames = kMostFrames;  // it is there to be compared with, not to be added to
+  }
   fit_planes();
 }
 
@@ -67,13 +75,23 @@ std::vector<float> BackgroundMap::depths_m() const {
   return depths;
 }
 
-void BackgroundMap::relearn(const DepthImage& depth, std::span<const std::uint8_t> chosen) {
-  for (int y = 0; y < grid_.height; ++y)
-    for (int x = 0; x < grid_.width; ++x)
-      if (const auto cell = static_cast<std::size_t>(y * grid_.width + x); chosen[cell] != 0)
-        cells_[cell].depth_m =
-            static_cast<float>(depth.depth_m(kBackgroundStride * x, kBackgroundStride * y));
+void BackgroundMap::relearn(std::span<const float> depth_m, std::span<const float> frames,
+                            std::span<const std::uint8_t> chosen) {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (chosen[i] == 0) continue;
+    cells_[i].depth_m = depth_m[i];
+    cells_[i].frames = frames[i];
+  }
   fit_planes();
+}
+
+void BackgroundMap::refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen) {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    BackgroundCell& cell = cells_[i];
+    if (chosen[i] == 0 || depth_m[i] <= 0 || cell.depth_m <= 0 || cell.frames >= kMostFrames) continue;
+    cell.frames += 1;
+    cell.depth_m += (depth_m[i] - cell.depth_m) / cell.frames;
+  }
 }
 
 void BackgroundMap::fit_planes() {
@@ -94,11 +112,12 @@ void BackgroundMap::fit_planes() {
 
 /// On a plane the inverse depth is linear in the viewing direction: 1/z = m · d.
 void BackgroundMap::fit_plane(int x, int y) {
-  if (x < 1 || y < 1 || x + 1 >= grid_.width || y + 1 >= grid_.height) return;
+  constexpr int kReach = kPlaneReach;
+  if (x < kReach || y < kReach || x + kReach >= grid_.width || y + kReach >= grid_.height) return;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (int v = y - 1; v <= y + 1; ++v) {
-    for (int u = x - 1; u <= x + 1; ++u) {
+  for (int v = y - kReach; v <= y + kReach; ++v) {
+    for (int u = x - kReach; u <= x + kReach; ++u) {
       const double z = cells_[static_cast<std::size_t>(v * grid_.width + u)].depth_m;
       if (z <= 0) return;
       const Eigen::Vector3d d = rays_.at(u, v);
@@ -109,8 +128,8 @@ void BackgroundMap::fit_plane(int x, int y) {
   const Eigen::Vector3d m = normal.ldlt().solve(right);
   BackgroundCell& cell = cells_[static_cast<std::size_t>(y * grid_.width + x)];
   const double z = cell.depth_m, allowed = std::max(kLeastOffPlane_m, kOffPlane * z);
-  for (int v = y - 1; v <= y + 1; ++v)
-    for (int u = x - 1; u <= x + 1; ++u) {
+  for (int v = y - kReach; v <= y + kReach; ++v)
+    for (int u = x - kReach; u <= x + kReach; ++u) {
       const double there = cells_[static_cast<std::size_t>(v * grid_.width + u)].depth_m;
       if (!(std::abs(1 / m.dot(rays_.at(u, v)) - there) < allowed)) return;
     }
@@ -119,6 +138,8 @@ void BackgroundMap::fit_plane(int x, int y) {
   if (!(cosine > kMinCosine)) return;
   cell.normal_per_m = m.cast<float>();
   cell.sigma_m = static_cast<float>(depth_sigma_m(z, cosine, 1 / (kBackgroundStride * grid_.fx)));
+  const double sigma = cell.sigma_m / (z * z);  // of the inverse depth
+  cell.normal_noise = (sigma * sigma / std::max(1.0F, cell.frames) * normal.inverse()).cast<float>();
 }
 
 const std::vector<std::uint8_t>& RobotMask::at(std::span<const double> positions, const Pose& T_base_sensor) {

@@ -19,7 +19,9 @@ constexpr int kBackgroundStride = 4;
 struct BackgroundCell {
   float depth_m = 0;  ///< along the optical axis, as the sensor measured it; 0 = nothing known
   Eigen::Vector3f normal_per_m = Eigen::Vector3f::Zero();  ///< zero: no plane, an edge
+  Eigen::Matrix3f normal_noise = Eigen::Matrix3f::Zero();  ///< covariance of it
   float sigma_m = 0;                                       ///< of one frame's depth here
+  float frames = 0;                                        ///< that depth_m is the mean of
   bool has_plane() const { return normal_per_m != Eigen::Vector3f::Zero(); }
 };
 
@@ -39,8 +41,15 @@ class BackgroundMap {
   /// What recall() takes.
   std::vector<float> depths_m() const;
 
-  /// Takes what is there now for `chosen` cells (row-major, 1 = chosen).
-  void relearn(const DepthImage& depth, std::span<const std::uint8_t> chosen);
+  /// Takes `depth_m`, each the mean of `frames` frames, for the `chosen` cells (row-major, 1 = chosen).
+  void relearn(std::span<const float> depth_m, std::span<const float> frames,
+               std::span<const std::uint8_t> chosen);
+  /// Takes one more frame into the means of the `chosen` cells, whose planes stay what they are. No mean is
+  /// of more than kMostFrames: what comes later is to be compared with it, not to become part of it.
+  void refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen);
+  static constexpr float kMostFrames = 60;
+  /// The planes from the means as they are by now.
+  void fit_planes();
 
   /// Too little to say anything of the pose.
   bool is_empty() const { return planes_ == 0; }
@@ -55,7 +64,6 @@ class BackgroundMap {
   static std::size_t size_of(const CameraModel& grid) {
     return static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
   }
-  void fit_planes();
   void fit_plane(int x, int y);
 
   CameraModel grid_;
@@ -75,8 +83,10 @@ class RobotMask {
   /// `positions`: of the frame's moment, position_names() order. 1 = robot, or so near its outline that it
   /// may be.
   const std::vector<std::uint8_t>& at(std::span<const double> positions, const Pose& T_base_sensor);
-  /// The robot at the joints of the last at().
+  /// The robot at the joints of the last at() ...
   const VirtualCell& cell() const { return cell_; }
+  /// ... and what of it the cells see.
+  const VirtualMeasurement& prediction() const { return prediction_; }
 
  private:
   VirtualCell cell_;

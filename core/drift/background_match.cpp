@@ -3,6 +3,7 @@
 #include "core/drift/background_match.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,10 @@
 namespace calibrd {
 namespace {
 
-constexpr double kFirstKernel_m = 0.04, kLeastKernel_m = 0.006;
+/// Of a sensor that stands or has moved a little, and of one that has moved far.
+constexpr double kNearKernel_m = 0.012, kFarKernel_m = 0.04, kLeastKernel_m = 0.006;
+/// The near one will do when of the cells that the far one would look at it leaves out no more than this.
+constexpr double kLeftOut = 0.15;
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kTypicalSigma_m = 1.6e-3;
 constexpr int kSteps = 3;
@@ -21,10 +25,24 @@ constexpr int kClusterSide = 6;
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
 constexpr std::size_t kLeastCells = 150;
+constexpr std::size_t kRowsInSingle = 128;
 /// Below this share of what could be seen the fit may be of anything.
 constexpr double kLeastShare = 0.35;
 /// No direction is known worse than this before the frame: it only keeps the equations solvable.
 constexpr double kVague = 0.5, kVagueOffset_m = 0.1;
+
+constexpr double kSpuriousSafety = 1.5;
+using Sums = Eigen::Matrix<double, BackgroundMatcher::kParameters, BackgroundMatcher::kParameters>;
+using Slope = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, 1>;
+using Products = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, BackgroundMatcher::kParameters + 1>;
+
+/// Covariance that is left when part of the information is none.
+Sums without(const Sums& spurious, const Sums& information, const Sums& vague) {
+  const Eigen::SelfAdjointEigenSolver<Sums> solver(information - kSpuriousSafety * spurious);
+  const Sums known = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() *
+                     solver.eigenvectors().transpose();
+  return (known + vague).ldlt().solve(Sums::Identity());
+}
 
 }  // namespace
 
@@ -33,14 +51,18 @@ struct BackgroundMatcher::Fit {
   Information information = Information::Zero();
   Parameters gradient = Parameters::Zero();
   Information covariance = Information::Zero();
-  double squares = 0, cluster_squares = 0, scatter = 1;
-  std::size_t used = 0;
+  double squares = 0, cluster_squares = 0, scatter = 1, common = 0, worth = 1;
+  std::size_t used = 0, around = 0;
+  bool explains_most() const {
+    return static_cast<double>(used) >= (1 - kLeftOut) * static_cast<double>(around);
+  }
 };
 
 /// The sensor moves by δ (sensor axes), the plane m·p = 1 stands: the depth z = 1/(m·d) along d changes by
 /// -z (m·δt) - z² (d×m)·δω.
 void BackgroundMatcher::refresh() {
   rows_.clear();
+  spurious_.setZero();
   const CameraModel& grid = map_.grid();
   const auto per_row = static_cast<std::uint32_t>((grid.width - 1) / kClusterSide + 1);
   for (int y = 0; y < grid.height; ++y) {
@@ -53,16 +75,29 @@ void BackgroundMatcher::refresh() {
       Row row{cell,
               static_cast<std::uint32_t>(y / kClusterSide) * per_row +
                   static_cast<std::uint32_t>(x / kClusterSide),
-              known.sigma_m,
-              {}};
+              known.sigma_m};
       row.slope.head<3>() = -z * z * d.cross(m);
       row.slope.segment<3>(3) = -z * m;
       row.slope[6] = 1;
       rows_.push_back(row);
+      add_spurious(known, d);
     }
   }
   clusters_ =
       static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
+}
+
+/// Normals that scatter look as if they showed every direction: a plain wall would seem to tell of moves
+/// along it. How much of the squares of the slopes is but that.
+void BackgroundMatcher::add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray) {
+  const double z = known.depth_m, sigma = known.sigma_m;
+  const Eigen::Vector3d d = ray.cast<double>();
+  Eigen::Matrix<double, 6, 3> slope_by_normal;
+  slope_by_normal.topRows<3>() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;
+  slope_by_normal.topRows<3>() *= z * z;
+  slope_by_normal.bottomRows<3>() = -z * Eigen::Matrix3d::Identity();
+  spurious_.topLeftCorner<6, 6>() +=
+      slope_by_normal * known.normal_noise.cast<double>() * slope_by_normal.transpose() / (sigma * sigma);
 }
 
 void BackgroundMatcher::sample(const DepthImage& depth) {
@@ -81,34 +116,58 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
   fit = {};
   whitened_.clear();
   pulls_.assign(clusters_, 0.0);
-  const Eigen::Matrix<float, kParameters, 1> start = at.cast<float>();
+  Slope start = Slope::Zero();
+  start.head<kParameters>() = at.cast<float>();
+  Products products = Products::Zero();  // in single precision over some rows, then in double
+  Slope gradient = Slope::Zero();
+  std::size_t pending = 0;
+  const auto flush = [&] {
+    fit.information += products.topLeftCorner<kParameters, kParameters>().cast<double>();
+    fit.gradient += gradient.head<kParameters>().cast<double>();
+    products.setZero();
+    gradient.setZero();
+    pending = 0;
+  };
   for (const Row& row : rows_) {
     const float z = depth_m_[row.cell];
     if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
     const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
+    if (std::abs(residual) < kFarKernel_m) ++fit.around;
     const double off = residual / kernel_m;
     if (std::abs(off) >= 1) continue;
     const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
-    const Parameters slope = row.slope.cast<double>();
-    const double weight = robust / (static_cast<double>(row.sigma_m) * row.sigma_m);
-    fit.information.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-    fit.gradient += weight * residual * slope;
+    const float weight = static_cast<float>(robust) / (row.sigma_m * row.sigma_m);
+    const Slope weighted = weight * row.slope;
+    products.noalias() += weighted * row.slope.transpose();
+    gradient += residual * weighted;
+    if (++pending == kRowsInSingle) flush();
     const double pull = robust * whitened;
     pulls_[row.cluster] += pull;
     fit.squares += pull * pull;
     whitened_.push_back(static_cast<float>(whitened));
+    fit.common += 1 / (1 + static_cast<double>(map_.cells()[row.cell].frames));
     ++fit.used;
   }
+  flush();
   for (const double pull : pulls_) fit.cluster_squares += pull * pull;
-  fit.information = fit.information.selfadjointView<Eigen::Lower>();
 }
 
+/// From afar a post that is gone, a hand's breadth before the wall that was behind it, pulls the whole
+/// background along, and does not let go of it again: what stands is looked for first.
 BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robot) {
+  Fit near = descend(robot, kNearKernel_m);
+  if (near.explains_most() && near.used >= kLeastCells) return near;
+  Fit far = descend(robot, kFarKernel_m);
+  return far.used > near.used ? far : near;
+}
+
+BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> robot,
+                                                  double first_kernel_m) {
   Parameters at = Parameters::Zero();
   at[6] = last_offset_m_;
   Parameters vague = Parameters::Constant(1 / (kVague * kVague));
   vague[6] = 1 / (kVagueOffset_m * kVagueOffset_m);
-  double kernel_m = kFirstKernel_m;
+  double kernel_m = first_kernel_m;
   Fit fit;
   for (int i = 0; i < kSteps; ++i) {
     collect(robot, at, kernel_m, fit);
@@ -120,17 +179,27 @@ BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robo
     information.diagonal() += vague;
     const Eigen::LDLT<Information> solver(information);
     at += solver.solve(worth * fit.gradient - vague.cwiseProduct(at));
-    fit.covariance = solver.solve(Information::Identity());
-    kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, kFirstKernel_m);
+    fit.worth = worth;
+    kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, first_kernel_m);
   }
   fit.solution = at;
+  const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
+  fit.covariance = without(fit.worth * seen * spurious_, fit.worth * fit.information, vague.asDiagonal());
   return fit;
 }
 
 void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
                                  BackgroundObservation& observation) {
   states_.assign(map_.cells().size(), CellState::unknown);
-  const auto offset = static_cast<float>(fit.solution[6]);
+  // An edge changes about as the plane before it in the picture does.
+  expected_change_m_.resize(map_.cells().size());
+  std::size_t next = 0;
+  for (const Row& row : rows_) {
+    const float change = row.slope.head<kParameters>().dot(fit.solution.cast<float>());
+    for (; next <= row.cell; ++next) expected_change_m_[next] = change;
+  }
+  for (; next < expected_change_m_.size(); ++next)
+    expected_change_m_[next] = next > 0 ? expected_change_m_[next - 1] : 0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BackgroundCell& known = map_.cells()[i];
     if (known.depth_m <= 0) continue;
@@ -140,7 +209,7 @@ void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit&
       state = CellState::robot;
     else if (depth_m_[i] <= 0)
       state = CellState::dark;
-    else if (const float change = depth_m_[i] - known.depth_m - offset; change < -gate)
+    else if (const float change = depth_m_[i] - known.depth_m - expected_change_m_[i]; change < -gate)
       state = CellState::nearer;
     else
       state = change > gate ? CellState::farther : CellState::same;
@@ -164,8 +233,9 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.offset_change_m = found.solution[6];
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
-  if (observation.has_evidence && std::abs(found.solution[6]) < kFirstKernel_m)
-    last_offset_m_ = found.solution[6];
+  observation.common_share = found.common / static_cast<double>(found.used);
+  if (observation.has_evidence && std::abs(observation.known_offset_m()) < kFarKernel_m)
+    last_offset_m_ = observation.known_offset_m();
   return observation;
 }
 

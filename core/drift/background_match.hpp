@@ -28,8 +28,12 @@ struct BackgroundObservation {
   Matrix6d covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
-  double scatter = 1;      ///< residuals against what noise explains
-  bool realigned = false;  ///< the background had to be searched: it lies far from where it should
+  /// Of that what can be relied on: before a single wall an offset looks like a shift.
+  double known_offset_m() const { return offset_sigma_m < kKnownOffset_m ? offset_change_m : 0; }
+  static constexpr double kKnownOffset_m = 0.003;
+  double scatter = 1;       ///< residuals against what noise explains
+  double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
+  bool realigned = false;   ///< the background had to be searched: it lies far from where it should
   std::array<std::size_t, 6> counts{};  ///< cells of each CellState
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
   /// Cells that could tell: remembered, not hidden by the robot.
@@ -76,18 +80,23 @@ class BackgroundMatcher {
   struct Row {
     std::uint32_t cell = 0, cluster = 0;
     float sigma_m = 0;
-    Eigen::Matrix<float, kParameters, 1> slope;  // of the depth by the parameters
+    /// Of the depth by the parameters; an eighth, 0, makes two whole vectors of it.
+    Eigen::Matrix<float, kParameters + 1, 1> slope = Eigen::Matrix<float, kParameters + 1, 1>::Zero();
   };
   struct Fit;
   void sample(const DepthImage& depth);
+  void add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray);
   Fit fit(std::span<const std::uint8_t> robot);
+  Fit descend(std::span<const std::uint8_t> robot, double first_kernel_m);
   void collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m, Fit& fit);
   void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
 
   const BackgroundMap& map_;
   std::vector<Row> rows_;
+  Information spurious_ = Information::Zero();  // information that is but noise of the planes' normals
   std::size_t clusters_ = 0;
   std::vector<float> depth_m_;
+  std::vector<float> expected_change_m_;  // of the depth, by the fit
   std::vector<CellState> states_;
   std::vector<float> whitened_;
   std::vector<double> pulls_;

@@ -3,6 +3,7 @@
 #include "core/drift/drift_watch.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -20,15 +21,24 @@ constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
 constexpr double kCheck_s = 2;    // a comparison with the robot is of now for so long
-/// CUSUM of how far off the robot looks: a comparison of a good model stays below 2.2 standard deviations of
-/// what noise, model and joint zeros explain, in every posture; the allowance is beyond that, because the
-/// comparisons of one posture all err alike.
-constexpr double kRobotAllowance = 2.7, kRobotMost = 2, kRobotLimit = 6;
+/// CUSUM of how far off the robot looks, posture by posture: a comparison of a good model stays below 2.2
+/// standard deviations of what noise, model and joint zeros explain, in nearly every posture.
+constexpr double kRobotAllowance = 2.7, kPostureWeight = 2, kRobotLimit = 5.5;
+constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 /// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
 /// the sensor has moved is not believed.
 constexpr double kDenial = 16;
-constexpr double kAbsorbEvery_s = 5;
+/// The sensor's own move may be what the robot shows when it leaves no more than this share of it (χ²)
+/// unexplained.
+constexpr double kUnexplainedShare = 0.4;
+constexpr double kMeanFrames = 7;  // that the mean of the test is of
+
+double worst_sigma(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+                       .eigenvalues()
+                       .maxCoeff());
+}
 
 }  // namespace
 
@@ -67,10 +77,11 @@ void DriftWatch::start_over() {
   test_.reset();
   T_learnt_now_.reset();
   check_.reset();
-  moved_ = bias_changed_ = false;
-  robot_statistic_ = 0;
-  lost_since_s_ = offset_over_s_ = -1;
-  evidence_s_ = in_front_s_ = check_s_ = -1e9;
+  moved_ = bias_changed_ = model_wrong_ = is_refined_ = false;
+  robot_statistic_ = before_posture_ = 0;
+  posture_.clear();
+  lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
+  evidence_s_ = pinned_s_ = in_front_s_ = check_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   absorbed_s_ = frame_s_;
   report_ = {};
@@ -79,6 +90,8 @@ void DriftWatch::start_over() {
 
 const DriftReport& DriftWatch::add_frame(const View& frame) {
   frame_s_ = frame.stamp_s;
+  if (!frame.joint_positions_rad.empty()) joints_ = frame.joint_positions_rad;
+  if (learnt_s_ < 0) learnt_s_ = frame_s_;
   ++frames_;
   report_.has_background = has_background();
   innovation_.reset();
@@ -91,11 +104,15 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     follow_loss(observation, frame_s_);
     test(observation);
     follow_offset(observation, frame_s_);
-    mark_carried(frame);
-    scene_.add(matcher_.states(), matcher_.depth_m(), carried_, frame_s_);
-    if (scene_.is_something_in_front()) in_front_s_ = frame_s_;
     describe(observation);
-    absorb(frame, frame_s_);
+    refine(observation, frame_s_);
+    if (!frame.joint_positions_rad.empty()) {  // else what seems to stand in front may be the robot
+      mark_carried(frame);
+      scene_.add(matcher_.states(), matcher_.depth_m(), carried_, frame_s_);
+      if (scene_.is_something_in_front()) in_front_s_ = frame_s_;
+      absorb_what_moved_as_one(frame_s_);
+      absorb(frame_s_);
+    }
   }
   judge(frame_s_);
   return report_;
@@ -120,19 +137,28 @@ void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservat
 void DriftWatch::test(const BackgroundObservation& observation) {
   if (!observation.has_evidence) return;
   const Matrix6d move = shift_of_point(T_base_sensor_.linear() * map_.middle_sensor());
-  innovation_ = Innovation{move * observation.shift, move * observation.covariance * move.transpose()};
-  test_.add(innovation_->turn_shift, innovation_->covariance);
+  innovation_ = Innovation{move * observation.shift, move * observation.covariance * move.transpose(),
+                           observation.common_share};
+  test_.add(innovation_->turn_shift, innovation_->covariance, innovation_->common_share);
+  if (worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
+      worst_sigma(innovation_->covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m)
+    pinned_s_ = frame_s_;
+  last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
   if (!test_.is_alarmed() || moved_) return;
-  if (robot_denies_the_shift(frame_s_)) {
-    // What stands around has moved as one; the robot says that the sensor has not.
-    report_.verdict = DriftVerdict::scene_changed;
-    in_front_s_ = frame_s_;
-    test_.reset();
-    return;
-  }
+  if (robot_denies_the_shift(frame_s_)) return on_denial();
   moved_ = true;
+}
+
+/// What stands around has moved as one; the robot says that the sensor has not.
+void DriftWatch::on_denial() {
+  if (frame_s_ - denied_s_ > kEvidence_s) {
+    denied_since_s_ = frame_s_;
+    scene_.forget_means();
+  }
+  denied_s_ = frame_s_;
+  test_.reset();
 }
 
 /// For each hypothesis how badly the robot's apparent shift fits it.
@@ -151,7 +177,7 @@ bool DriftWatch::robot_denies_the_shift(double now_s) const {
 void DriftWatch::follow_offset(const BackgroundObservation& observation, double now_s) {
   if (!observation.has_evidence || observation.realigned) return;
   const double newest = 1 / (kOffsetMean_s * settings_.shift.rate_hz);
-  offset_m_ += newest * (observation.offset_change_m - offset_m_);
+  offset_m_ += newest * (observation.known_offset_m() - offset_m_);
   offset_sigma_m_ = observation.offset_sigma_m * std::sqrt(newest);
   const double over = std::abs(offset_m_) - 3 * offset_sigma_m_;
   if (over < kBiasOff * settings_.depth_bias_m) bias_changed_ = false;
@@ -169,41 +195,15 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;
   if (!lost) return;
   if (lost_since_s_ < 0) lost_since_s_ = now_s;
-  if (now_s - lost_since_s_ >= kLost_s) moved_ = true;
+  if (now_s - lost_since_s_ < kLost_s) return;
+  if (!robot_stands_since(lost_since_s_))
+    moved_ = true;
+  else
+    denied_s_ = now_s;
 }
 
-/// What the robot carries moves with the end of its arm.
-void DriftWatch::mark_carried(const View& frame) {
-  carried_.assign(map_.cells().size(), 0);
-  if (frame.joint_positions_rad.empty()) return;
-  const auto& model = robot_.cell().robot();
-  std::vector<bool> ends(model.links().size(), true);
-  for (const Joint& joint : model.joints()) ends[static_cast<std::size_t>(joint.parent_link)] = false;
-  std::vector<Eigen::Vector3d> tips_sensor;
-  for (std::size_t l = 0; l < ends.size(); ++l)
-    if (ends[l] && model.links()[l].parent_joint >= 0)
-      tips_sensor.push_back(T_base_sensor_.inverse() * robot_.cell().link_poses()[l].translation());
-  const double reach = settings_.carried_reach_m * settings_.carried_reach_m;
-  for (std::size_t i = 0; i < carried_.size(); ++i) {
-    if (matcher_.states()[i] != CellState::nearer) continue;
-    const auto width = static_cast<std::size_t>(map_.grid().width);
-    const Eigen::Vector3d p = static_cast<double>(matcher_.depth_m()[i]) *
-                              map_.rays().at(static_cast<int>(i % width), static_cast<int>(i / width));
-    for (const auto& tip : tips_sensor)
-      if ((p - tip).squaredNorm() < reach) carried_[i] = 1;
-  }
-}
-
-/// What stands for long is background; the plain one is left as it was, or a sensor that creeps would take it
-/// along.
-void DriftWatch::absorb(const View& frame, double now_s) {
-  if (now_s - absorbed_s_ < kAbsorbEvery_s) return;
-  absorbed_s_ = now_s;
-  if (moved_ || wants_check()) return;
-  const auto chosen = scene_.unchanged_for(settings_.absorb_s);
-  if (std::ranges::count(chosen, std::uint8_t{1}) == 0) return;
-  map_.relearn(frame.depth, chosen);
-  matcher_.refresh();
+bool DriftWatch::robot_stands_since(double since_s) const {
+  return check_ && check_->agrees && check_s_ > since_s && frame_s_ - check_s_ < kCheck_s;
 }
 
 void DriftWatch::describe(const BackgroundObservation& observation) {
@@ -225,74 +225,71 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
   if (!check.enough_evidence) return;
   check_ = check;
   check_s_ = now_s;
-  const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
-  robot_statistic_ = std::max(0.0, robot_statistic_ + std::min(sigmas - kRobotAllowance, kRobotMost));
-  robot_statistic_ = std::min(robot_statistic_, 2 * kRobotLimit);  // what is mended shows soon
+  follow_posture(check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained);
+  if (robot_statistic_ < 0.5 * kRobotLimit) model_wrong_ = false;
+  if (robot_statistic_ <= kRobotLimit || model_wrong_ || moved_) return;
+  if (is_robots_shift_possible())
+    moved_ = true;
+  else
+    model_wrong_ = true;
+}
+
+/// Comparisons of one posture all err alike, and a part in the gripper may look like the robot: a posture has
+/// one word, and one posture alone says nothing against the robot.
+void DriftWatch::follow_posture(double sigmas) {
+  bool same = posture_.size() == joints_.size();
+  for (std::size_t j = 0; same && j < joints_.size(); ++j)
+    same = std::abs(joints_[j] - posture_[j]) < kOtherPosture_rad;
+  if (!same) {
+    posture_ = joints_;
+    before_posture_ = std::min(robot_statistic_, kRobotLimit);  // what is mended shows soon
+    posture_sigmas_ = posture_checks_ = 0;
+  }
+  ++posture_checks_;
+  posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
+  const double word =
+      std::clamp(kPostureWeight * (posture_sigmas_ - kRobotAllowance), -kMostPerPosture, kMostPerPosture);
+  robot_statistic_ = std::max(0.0, before_posture_ + word);
+}
+
+/// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
+bool DriftWatch::is_robots_shift_possible() const {
+  if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
+  if (!(check_->shift_sigmas > 0))
+    return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
+  const Matrix6d move = shift_of_point(check_->middle_base - T_base_sensor_.translation()) *
+                        shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
+  const Vector6d left = check_->turn_shift - move * test_.mean();
+  Matrix6d mean_covariance = *last_covariance_ / kMeanFrames;
+  mean_covariance.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);
+  mean_covariance.diagonal().tail<3>().array() += std::pow(settings_.shift.tolerance_m, 2);
+  const Matrix6d covariance = check_->turn_shift_covariance + move * mean_covariance * move.transpose();
+  return left.dot(covariance.ldlt().solve(left)) < kUnexplainedShare * std::pow(check_->shift_sigmas, 2);
 }
 
 bool DriftWatch::is_in_place() const {
-  return has_background() && !moved_ && frame_s_ - evidence_s_ < kEvidence_s && !wants_check();
+  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
+}
+
+bool DriftWatch::is_seen(double now_s) const {
+  return now_s - pinned_s_ < kEvidence_s || (check_ && check_->agrees && now_s - check_s_ < kCheck_s);
 }
 
 void DriftWatch::judge(double now_s) {
-  const bool seen = now_s - evidence_s_ < kEvidence_s || now_s - check_s_ < kCheck_s;
   const bool in_front = now_s - in_front_s_ < kInFront_s;
   if (moved_)
     report_.verdict = DriftVerdict::sensor_moved;
-  else if (robot_statistic_ > kRobotLimit && is_in_place())
+  else if (model_wrong_)
     report_.verdict = DriftVerdict::robot_model_wrong;
+  else if (!is_seen(now_s))
+    report_.verdict =
+        in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
   else if (bias_changed_)
     report_.verdict = DriftVerdict::depth_bias_changed;
-  else if (scene_.has_changed())
+  else if (scene_.has_changed() || now_s - denied_s_ < kEvidence_s)
     report_.verdict = DriftVerdict::scene_changed;
-  else if (in_front)
-    report_.verdict = DriftVerdict::something_in_front;
   else
-    report_.verdict = seen ? DriftVerdict::in_place : DriftVerdict::no_evidence;
-}
-
-const char* name_of(DriftVerdict verdict) {
-  switch (verdict) {
-    case DriftVerdict::in_place:
-      return "in_place";
-    case DriftVerdict::sensor_moved:
-      return "sensor_moved";
-    case DriftVerdict::something_in_front:
-      return "something_in_front";
-    case DriftVerdict::scene_changed:
-      return "scene_changed";
-    case DriftVerdict::robot_model_wrong:
-      return "robot_model_wrong";
-    case DriftVerdict::depth_bias_changed:
-      return "depth_bias_changed";
-    case DriftVerdict::no_evidence:
-      break;
-  }
-  return "no_evidence";
-}
-
-const char* text_of(DriftVerdict verdict) {
-  switch (verdict) {
-    case DriftVerdict::in_place:
-      return "the sensor sees the cell as when it was calibrated";
-    case DriftVerdict::sensor_moved:
-      return "the sensor has moved: its pose is wrong until it is calibrated again";
-    case DriftVerdict::something_in_front:
-      return "something passes between the sensor and what it knows";
-    case DriftVerdict::scene_changed:
-      return "something in the cell was moved, brought or taken away; the sensor stands";
-    case DriftVerdict::robot_model_wrong:
-      return "the sensor stands, but the robot is not where its joints say: check joint zeros, the tool, the "
-             "robot's "
-             "base and the model";
-    case DriftVerdict::depth_bias_changed:
-      return "the sensor stands, but its range reads otherwise than when it was calibrated, as while it "
-             "warms up; "
-             "calibrate again once it is warm if depths are used as they come";
-    case DriftVerdict::no_evidence:
-      break;
-  }
-  return "nothing is in view that could tell: neither robot nor known background, or the sensor is dark";
+    report_.verdict = in_front ? DriftVerdict::something_in_front : DriftVerdict::in_place;
 }
 
 }  // namespace calibrd

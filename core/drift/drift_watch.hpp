@@ -3,32 +3,15 @@
 #pragma once
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/calibration/check_pose.hpp"
 #include "core/drift/background_match.hpp"
+#include "core/drift/drift_verdict.hpp"
 #include "core/drift/scene_change.hpp"
 #include "core/drift/shift_test.hpp"
 
 namespace calibrd {
-
-/// What the frames say of a sensor's pose. Kept apart because each calls for something else.
-enum class DriftVerdict {
-  in_place,
-  sensor_moved,        ///< the pose is wrong: calibrate again
-  something_in_front,  ///< a person, a part: it passes
-  scene_changed,       ///< a box moved, a door opened; the sensor stands
-  robot_model_wrong,   ///< the background is in place, the robot is not: joint zero, base, model
-  depth_bias_changed,  ///< the range reads more or less than at calibration (warm-up)
-  no_evidence          ///< neither background nor robot in view, or the sensor is dark
-};
-inline constexpr std::size_t kDriftVerdicts = 7;
-
-/// Stable name for programs: "in_place", "sensor_moved", …
-const char* name_of(DriftVerdict verdict);
-/// What it means and what to do.
-const char* text_of(DriftVerdict verdict);
 
 struct DriftSettings {
   ShiftTestSettings shift;
@@ -36,6 +19,9 @@ struct DriftSettings {
   double depth_bias_m = 0.003;    ///< a change of the range offset by more is worth a verdict
   double absorb_s = 60;           ///< what has changed and stands for so long becomes background
   double carried_reach_m = 0.35;  ///< what is so near the end of the arm is carried by it
+  /// Where one frame of the background leaves a direction less certain than this (one sigma, worst
+  /// direction), as a single wall does, it is no evidence that the sensor stands.
+  double pinned_m = 0.003, pinned_rad = 0.003;
 };
 
 /// One look at the watch.
@@ -76,8 +62,8 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const { return test_.statistic() > 0.2 * test_.threshold(); }
-  /// The background is in view and where it was.
+  bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
+  /// The background is in view, where it was, and shows every direction.
   bool is_in_place() const;
 
   const BackgroundMap& background() const { return map_; }
@@ -86,6 +72,7 @@ class DriftWatch {
   struct Innovation {
     Vector6d turn_shift;
     Matrix6d covariance;
+    double common_share;  ///< as BackgroundObservation
   };
   const std::optional<Innovation>& innovation() const { return innovation_; }
 
@@ -96,10 +83,19 @@ class DriftWatch {
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
   void mark_carried(const View& frame);
-  void absorb(const View& frame, double now_s);
+  void refine(const BackgroundObservation& observation, double now_s);
+  void absorb(double now_s);
+  void absorb_what_moved_as_one(double now_s);
+  void take(const std::vector<std::uint8_t>& chosen);
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
+  void on_denial();
+  void follow_posture(double sigmas);
   bool robot_denies_the_shift(double now_s) const;
+  bool robot_stands_since(double since_s) const;
+  bool is_robots_shift_possible() const;
+  bool is_seen(double now_s) const;
+  bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
   DriftSettings settings_;
   CameraModel camera_;
@@ -111,18 +107,24 @@ class DriftWatch {
   ShiftTest test_;
   DriftReport report_;
   std::optional<Innovation> innovation_;
-  std::optional<Pose> T_learnt_now_;  // of the last realignment
+  std::optional<Matrix6d> last_covariance_;  // of the last innovation
+  std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
-  bool moved_ = false;
+  bool moved_ = false, is_refined_ = false;
   int frames_ = 0;
-  double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0;
-  double in_front_s_ = -1e9;  // last time something was
+  double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0, learnt_s_ = -1;
+  double pinned_s_ = -1e9;                          // last time the background showed every direction
+  double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
+  double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
-  bool bias_changed_ = false;
+  bool bias_changed_ = false, model_wrong_ = false;
   // What the robot said, newest last.
   std::optional<PoseCheck> check_;
   double check_s_ = -1e9;
-  double robot_statistic_ = 0;
+  double robot_statistic_ = 0, before_posture_ = 0;
+  std::vector<double> joints_, posture_;  // of the last frame; of the posture that is looked at
+  double posture_sigmas_ = 0;             // mean of its comparisons
+  int posture_checks_ = 0;
 };
 
 }  // namespace calibrd

@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/drift/scene_change.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace calibrd {
 namespace {
 
-constexpr float kSameDepth_m = 0.02F;
+/// Where the noise of one frame grows as the square of the distance does.
+constexpr float kSameDepth_m = 0.02F, kSameDepthUpTo_m = 1.5F;
+
+float same_depth_m(float depth_m) {
+  const float far = std::max(1.0F, depth_m / kSameDepthUpTo_m);
+  return kSameDepth_m * far * far;
+}
 
 }  // namespace
 
@@ -16,14 +23,24 @@ void SceneChange::reset() { *this = SceneChange(settings_, static_cast<int>(widt
 void SceneChange::add(std::span<const CellState> states, std::span<const float> depth_m,
                       std::span<const std::uint8_t> ignored, double now_s) {
   cells_.resize(states.size());
+  mean_depth_m_.resize(states.size());
+  mean_frames_.resize(states.size());
   changed_.assign(states.size(), 0);
   now_s_ = now_s;
   for (std::size_t i = 0; i < states.size(); ++i) {
     Cell& cell = cells_[i];
     const CellState state = states[i];
     const bool hidden = state == CellState::robot || state == CellState::dark;
-    const bool same = state == cell.state && std::abs(depth_m[i] - cell.depth_m) < kSameDepth_m;
-    if (!same && !hidden) cell = {state, depth_m[i], now_s};
+    const bool same = state == cell.state && std::abs(depth_m[i] - cell.depth_m) < same_depth_m(cell.depth_m);
+    if (!same && !hidden) {
+      cell = {state, depth_m[i], now_s};
+      mean_frames_[i] = 0;
+    }
+    if (!hidden) {
+      mean_frames_[i] = std::min(mean_frames_[i] + 1, BackgroundMap::kMostFrames);
+      mean_depth_m_[i] += (depth_m[i] - mean_depth_m_[i]) / mean_frames_[i];
+      cell.depth_m = mean_depth_m_[i];
+    }
     // The robot hides a cell for a while, or a pixel fails: what had settled there still holds.
     if (hidden && now_s - cell.since_s < settings_.settle_s) continue;
     const bool changed = cell.state == CellState::nearer || cell.state == CellState::farther;

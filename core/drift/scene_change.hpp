@@ -35,6 +35,12 @@ class SceneChange {
   /// Cells that have shown one and the same other depth for `seconds`, or that nothing was known of:
   /// row-major, 1 = so.
   std::vector<std::uint8_t> unchanged_for(double seconds) const;
+  /// What a cell has shown since it came to show it: mean depth, and of how many frames (at most the last
+  /// BackgroundMap::kMostFrames or so).
+  const std::vector<float>& mean_depth_m() const { return mean_depth_m_; }
+  const std::vector<float>& mean_frames() const { return mean_frames_; }
+  /// Begins the means anew.
+  void forget_means() { mean_frames_.assign(mean_frames_.size(), 0); }
 
  private:
   struct Cell {
@@ -48,6 +54,7 @@ class SceneChange {
   SceneChangeSettings settings_;
   std::size_t width_;
   std::vector<Cell> cells_;
+  std::vector<float> mean_depth_m_, mean_frames_;
   std::vector<std::uint8_t> changed_;  // 1: shows something else, and counts
   double now_s_ = 0;
   std::size_t settled_ = 0, passing_ = 0;

@@ -12,6 +12,7 @@ namespace {
 constexpr double kAllowance = 1;  // standard deviations: half of what it is most sensitive to
 /// One frame counts no more than this, so that no single one alarms.
 constexpr double kMostPerFrame = 4;
+constexpr double kCommonSigmas = 3;
 constexpr double kNewest = 0.25;  // weight of a frame in the running mean
 constexpr double kSecondsPerYear = 365.25 * 86400;
 /// Uncertainty that does not average out from frame to frame (a tool's shadow, a cable that sways), m and
@@ -48,7 +49,7 @@ Vector6d ShiftTest::mean() const {
   return mean;
 }
 
-void ShiftTest::add(const Vector6d& turn_shift, const Matrix6d& covariance) {
+void ShiftTest::add(const Vector6d& turn_shift, const Matrix6d& covariance, double common_share) {
   Vector6d unit;
   unit << Eigen::Vector3d::Constant(1 / settings_.tolerance_rad),
       Eigen::Vector3d::Constant(1 / settings_.tolerance_m);
@@ -62,7 +63,8 @@ void ShiftTest::add(const Vector6d& turn_shift, const Matrix6d& covariance) {
     const Vector6d weight = scaled.ldlt().solve(scaled_mean_);
     // Turn and shift may each be off by the tolerance at once.
     const double tolerated = weight.head<3>().norm() + weight.tail<3>().norm();
-    const double excess = (weight.dot(shift) - tolerated) / std::sqrt(weight.dot(scaled * weight));
+    const double excess = (weight.dot(shift) - tolerated) / std::sqrt(weight.dot(scaled * weight)) -
+                          kCommonSigmas * std::sqrt(common_share);
     const double step = std::isfinite(excess) ? std::min(excess, kMostPerFrame) - kAllowance : -kAllowance;
     statistic_ = std::max(0.0, statistic_ + step);
     run_length_ = statistic_ > 0 ? run_length_ + 1 : 0;

@@ -15,13 +15,15 @@ struct ShiftTestSettings {
 /// along the direction that the frames before point to, less the farthest that the tolerance reaches that
 /// way, in standard deviations. While the sensor stands its increments have mean <= 0 whatever the shift
 /// within the tolerance, and the direction does not know the frame it is used on. The limit follows from the
-/// false alarms allowed (Siegmund 1985). Without I/O; not thread-safe.
+/// false alarms allowed (Siegmund 1985). What all frames are off by together is tolerated, too, up to three
+/// of its standard deviations: a sum over frames does not average it out. Without I/O; not thread-safe.
 class ShiftTest {
  public:
   explicit ShiftTest(const ShiftTestSettings& settings);
 
-  /// `turn_shift`: rotation (rad), and shift (m) of a point amid what is seen; `covariance` of it.
-  void add(const Vector6d& turn_shift, const Matrix6d& covariance);
+  /// `turn_shift`: rotation (rad), and shift (m) of a point amid what is seen; `covariance` of it, of which
+  /// `common_share` is the same in all frames: the noise of what they are compared with.
+  void add(const Vector6d& turn_shift, const Matrix6d& covariance, double common_share = 0);
   void reset();
 
   bool is_alarmed() const { return statistic_ > threshold_; }

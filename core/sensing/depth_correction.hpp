@@ -27,6 +27,12 @@ struct DepthCorrection {
     const double rate = 2 * std::numbers::pi / periodic_period_m;
     return scale + rate * (periodic_sin_m * std::cos(rate * z) - periodic_cos_m * std::sin(rate * z));
   }
+  /// The true depth of a measured one (Newton's steps; the errors are millimetres).
+  double truth(double z_measured) const {
+    double z = z_measured;
+    for (int step = 0; step < 3; ++step) z -= (measured(z) - z_measured) / slope(z);
+    return z;
+  }
   double periodic_amplitude_m() const { return std::hypot(periodic_sin_m, periodic_cos_m); }
 };
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/virtual_cell/link_scenes.hpp"
+#include "core/virtual_cell/nearest_surface.hpp"
 #include "core/virtual_cell/ray_tables.hpp"
 
 namespace calibrd {
@@ -173,6 +174,22 @@ SurfaceHit VirtualCell::hit_along(const Eigen::Vector3d& direction_sensor, const
   const Eigen::Vector3f in_link(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z);
   const Eigen::Vector3f normal = (R_sensor_link.cast<float>() * in_link).normalized();
   return {hit.ray.tfar, normal.dot(direction_sensor.cast<float>()) > 0 ? Eigen::Vector3f(-normal) : normal};
+}
+
+std::optional<SurfacePoint> VirtualCell::nearest_surface(const Eigen::Vector3d& point_base,
+                                                         double within_m) const {
+  std::optional<SurfacePoint> nearest;
+  for (const LinkScenes::Surface& surface : impl_->links->surfaces()) {
+    const auto link = static_cast<std::size_t>(surface.link);
+    const Pose& T_base_link = impl_->T_base_link[link];
+    const Eigen::Vector3d point_link = T_base_link.inverse() * point_base;
+    const auto found = nearest_on_link(surface, impl_->robot->links()[link].surface, point_link.cast<float>(),
+                                       static_cast<float>(within_m));
+    if (!found) continue;
+    within_m = (found->cast<double>() - point_link).norm();
+    nearest = SurfacePoint{surface.link, T_base_link * found->cast<double>(), within_m};
+  }
+  return nearest;
 }
 
 const RobotModel& VirtualCell::robot() const { return *impl_->robot; }

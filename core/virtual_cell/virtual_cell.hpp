@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,9 +35,16 @@ struct SurfaceHit {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, sensor frame, towards the sensor
 };
 
+/// A point of the robot's surface.
+struct SurfacePoint {
+  int link = -1;  ///< index into RobotModel::links()
+  Eigen::Vector3d point_base = Eigen::Vector3d::Zero();
+  double distance_m = 0;  ///< from the point it was asked for
+};
+
 /// The robot placed at joint positions, measured by a virtual sensor from any pose (Embree ray casting).
-/// hit_along() may be called from any number of threads, measure() and set_joints() from one at a time.
-/// `robot` must outlive it.
+/// hit_along() and nearest_surface() may be called from any number of threads, measure() and set_joints()
+/// from one at a time. `robot` must outlive it.
 class VirtualCell {
  public:
   explicit VirtualCell(const RobotModel& robot);
@@ -56,6 +64,10 @@ class VirtualCell {
 
   /// What one direction (sensor frame, z = 1) meets, seen from `T_base_sensor`.
   SurfaceHit hit_along(const Eigen::Vector3d& direction_sensor, const Pose& T_base_sensor) const;
+
+  /// The point of the robot's surface nearest to `point_base` (m), exact on its triangles; nothing when it is
+  /// not closer than `within_m`.
+  std::optional<SurfacePoint> nearest_surface(const Eigen::Vector3d& point_base, double within_m) const;
 
   const RobotModel& robot() const;
 

@@ -157,8 +157,8 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.gate.settle_time = config.calibration.settle_time;
   settings.gate.still_speed_rad_s = config.calibration.still_speed_deg_s * kRadPerDeg;
   settings.gate.trust_in_motion = config.robot.trust_in_motion;
-  settings.gate.timed_views = settings.jobs.collector.moving_views =
-      config.calibration.views == "still_or_timed";
+  settings.gate.timed_views = true;  // also for checks, and for healing
+  settings.jobs.collector.moving_views = config.calibration.views == "still_or_timed";
   settings.watch.max_unverified = config.pose.max_unverified;
   settings.watch.check_period = config.pose.check_period;
   settings.healing.mode = healing_mode(config.drift.healing);

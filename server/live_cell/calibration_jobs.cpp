@@ -30,12 +30,13 @@ std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::
 }  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
-                                 Log log, JobSettings settings)
+                                 Log log, JobSettings settings, Review review)
     : store_(store),
       calibrate_(std::move(calibrate)),
       publish_(std::move(publish)),
       log_(std::move(log)),
       settings_(settings),
+      review_(std::move(review)),
       thread_([this] { run(); }) {}
 
 CalibrationJobs::~CalibrationJobs() {
@@ -101,6 +102,8 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   auto job = std::make_shared<Job>();
   auto collector = settings_.collector;
   collector.postures = request.postures.value_or(collector.postures);
+  // A robot at work must not be waited for while there is no pose.
+  collector.moving_views = collector.moving_views || request.after_move;
   if (!guess) collector.postures = std::max(collector.postures, kPosturesFromNothing);
   job->report.id = new_id();
   job->report.sensor_id = sensor.id();

@@ -35,12 +35,14 @@ class CalibrationJobs {
   /// Called for a calibration that has just become the current one. `seen_at`: when its last view was taken.
   using Publish = std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at,
                                      std::vector<View> views)>;
+  /// Looks at what was found, on the jobs' thread, before it is stored or published; may make it uncertain.
+  using Review = std::function<void(LiveSensor& sensor, std::span<const View> views, CalibrationResult&)>;
   using Log = std::function<void(const api::CalibrationReport&)>;
 
   /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
   /// collecting when it has lost postures.
   CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish, Log log,
-                  JobSettings settings);
+                  JobSettings settings, Review review = {});
   ~CalibrationJobs();
 
   /// `sensor` must outlive the jobs. `guess`: where the request leaves the start to the cell. Without any, at
@@ -86,6 +88,7 @@ class CalibrationJobs {
   const Publish publish_;
   const Log log_;
   const JobSettings settings_;
+  const Review review_;
 
   std::mutex starting_;  // one start() at a time: two requests with one key start one calibration
   std::mt19937 random_{std::random_device{}()};  // guarded by starting_

@@ -123,6 +123,7 @@ void CalibrationJobs::compute(const JobPointer& job) {
     end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
     return;
   }
+  if (review_) review_(*job->sensor, views, result);
   auto evidence = evidence_of(result, job->report.method, views);
   end_computed(job, std::move(result), seen_at);
   if (evidence) job->sensor->set_evidence(*std::move(evidence));

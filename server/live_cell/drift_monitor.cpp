@@ -29,6 +29,7 @@ void DriftMonitor::set_pose(const std::string& calibration_id, const Pose& T_bas
   order_ = Order{calibration_id, T_base_sensor, std::move(background)};
   has_pose_ = true;
   newest_ = {};
+  background_.reset();
   in_place_ = wants_check_ = false;
 }
 
@@ -43,9 +44,11 @@ void DriftMonitor::take_order() {
   watch_->set_pose(order->T_base_sensor);
   const auto& [views, depth_m] = order->background;
   if (!depth_m.empty()) watch_->recall(depth_m);
-  if (views.empty()) return;
-  watch_->learn(views);
-  if (on_learnt_) on_learnt_(order->calibration_id, watch_->background().depths_m());
+  if (!views.empty()) {
+    watch_->learn(views);
+    if (on_learnt_) on_learnt_(order->calibration_id, watch_->background().depths_m());
+  }
+  show_background();
 }
 
 void DriftMonitor::add_frame(const View& frame) {
@@ -96,6 +99,19 @@ void DriftMonitor::keep_for_background(const View& frame) {
   if (passed_.size() < (several ? kFramesToLearn : kMostFramesToLearn)) return;
   watch_->learn(passed_);
   passed_.clear();
+  show_background();
+}
+
+void DriftMonitor::show_background() {
+  if (!watch_->has_background()) return;
+  auto learnt = std::make_shared<const BackgroundMap>(watch_->background());
+  const std::lock_guard lock(mutex_);
+  if (!order_) background_ = std::move(learnt);
+}
+
+std::shared_ptr<const BackgroundMap> DriftMonitor::background() const {
+  const std::lock_guard lock(mutex_);
+  return background_;
 }
 
 DriftVerdict DriftMonitor::verdict() const {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "api/service/reports.hpp"
@@ -44,6 +45,9 @@ class DriftMonitor {
   double depth_offset_change_m() const;
   /// Where a sensor that has moved is now, as far as the background tells.
   std::optional<Pose> T_base_sensor_seen() const;
+  /// The background as it was learnt for the pose that was set last; nothing while it is not known. What has
+  /// come since and stands for long is not in it.
+  std::shared_ptr<const BackgroundMap> background() const;
 
   api::DriftReport report() const;
 
@@ -55,6 +59,7 @@ class DriftMonitor {
   };
   void take_order();
   void keep_for_background(const View& frame);
+  void show_background();
   void note(const DriftReport& report, double now_s);
 
   const std::unique_ptr<DriftWatch> watch_;  // the sensor's thread's own
@@ -65,6 +70,7 @@ class DriftMonitor {
   std::optional<Order> order_;
   bool has_pose_ = false;
   DriftReport newest_;
+  std::shared_ptr<const BackgroundMap> background_;
   bool in_place_ = false, wants_check_ = false;
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it

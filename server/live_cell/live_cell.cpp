@@ -20,6 +20,8 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       motions_(settings_.motion, robot_, log_.on_motion),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
+      cloud_merger_(virtual_cell),
+      obstacle_watch_(virtual_cell),
       jobs_(
           store, estimator_.calibrate,
           [this](const auto& calibration, auto seen_at, auto views) {
@@ -29,7 +31,8 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
             if (log_.on_calibration) log_.on_calibration(calibration);
             healer_.on_calibration(calibration);
           },
-          settings_.jobs),
+          settings_.jobs,
+          [this](auto& sensor, auto views, auto& result) { compare_with_others(sensor, views, result); }),
       healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
 
 LiveCell::~LiveCell() {

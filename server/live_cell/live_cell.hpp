@@ -11,10 +11,13 @@
 #include "api/service/cell_service.hpp"
 #include "server/live_cell/calibration_jobs.hpp"
 #include "server/live_cell/cloud_maker.hpp"
+#include "server/live_cell/cloud_merger.hpp"
 #include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
+#include "server/live_cell/obstacle_watch.hpp"
 #include "server/live_cell/robot_motions.hpp"
+#include "server/live_cell/sensor_comparison.hpp"
 #include "server/storage/calibration_store.hpp"
 
 namespace calibrd {
@@ -101,6 +104,10 @@ class LiveCell : public api::CellService {
   api::MotionsReport motions() const override { return motions_.list(); }
   Result<api::MotionReport> motion(std::string_view id) const override { return motions_.find(id); }
   Result<api::MotionReport> stop_motion(std::string_view id) override { return motions_.stop(id); }
+  Result<api::ObstaclesReport> obstacles(const std::string& sensor_id) const override;
+  std::vector<api::SensorPair> cross_checks() const override;
+  Result<api::MergedCloud> merged_cloud(const api::MergedCloudRequest& request) const override;
+  Result<api::CellCalibrations> start_calibrations(const api::CellCalibrationRequest& request) override;
 
  private:
   struct Entry {
@@ -120,6 +127,7 @@ class LiveCell : public api::CellService {
   std::unique_ptr<DriftMonitor> make_monitor(const SensorSetup& setup);
   void store_background(const std::string& calibration_id, const std::vector<float>& depth_m);
   DriftMonitor::Background stored_background(const std::string& calibration_id);
+  void compare_with_others(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -134,6 +142,9 @@ class LiveCell : public api::CellService {
   mutable RobotMotions motions_;    // hears of every posture that is suggested
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
+  mutable CloudMerger cloud_merger_;
+  mutable ObstacleWatch obstacle_watch_;
+  const SensorComparison comparison_{virtual_cell_};
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   CalibrationJobs jobs_;                                                // its thread uses the others
   Healer healer_;                                                       // last: its thread uses jobs_

@@ -12,9 +12,9 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
-constexpr std::size_t kMostPending = 15;  ///< frames that wait for joints: of controllers later than sensors
 /// A sensor that has moved is seen from frame to frame within this, once it rests.
 constexpr double kRest_m = 0.005, kRest_rad = 0.004;
+constexpr std::size_t kMostPending = 15;  ///< frames that wait for joints: of controllers later than sensors
 
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
@@ -124,7 +124,7 @@ void LiveSensor::finish(FrameDecision decision) {
   offset_.offer(sighting);
   serve_tasks(*sighting, usable || timed);
   watch(*sighting);
-  if (usable) check(*sighting);
+  if (usable || timed) check(*sighting);
 }
 
 std::vector<std::shared_ptr<CollectTask>> LiveSensor::open_tasks() {
@@ -245,6 +245,13 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   else
     watch_.set_stored();
   if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
+}
+
+void LiveSensor::withhold(const std::string& objection) {
+  const std::lock_guard lock(mutex_);
+  if (!known_) return;
+  watch_.set_withheld(objection);
+  evidence_.reset();
 }
 
 std::optional<Pose> LiveSensor::plausible_pose() const {

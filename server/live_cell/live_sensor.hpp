@@ -80,6 +80,10 @@ class LiveSensor {
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
                 DriftMonitor::Background background = {});
 
+  /// Something else speaks against the pose being served: until another one takes over it is not valid,
+  /// whatever its checks say.
+  void withhold(const std::string& objection);
+
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
 
@@ -98,6 +102,10 @@ class LiveSensor {
   api::DriftReport drift() const;
   /// Where a sensor that has moved is now, as far as its background tells.
   std::optional<Pose> seen_pose() const;
+  /// See DriftMonitor.
+  std::shared_ptr<const BackgroundMap> background() const {
+    return monitor_ ? monitor_->background() : nullptr;
+  }
   api::SensorReport report() const;
   /// Why it gives no views now, and what to do; empty: it does.
   std::string hindrance() const;
@@ -129,9 +137,9 @@ class LiveSensor {
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
-  const std::shared_ptr<const LinkReach> reach_;
-  OffsetWatch offset_;              // its report(): anybody's
   std::optional<Pose> resting_at_;  // where a sensor that has moved was seen first, or last come to rest
+  const std::shared_ptr<const LinkReach> reach_;
+  OffsetWatch offset_;  // its report(): anybody's
   ViewGate gate_;
   std::deque<std::shared_ptr<Sighting>> pending_;  // entered, their joints not all there; oldest first
   std::uint64_t restarts_ = 0;                     // of the source, as far as noticed

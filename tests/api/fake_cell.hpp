@@ -28,6 +28,11 @@ class FakeCell : public CellService {
   std::function<Result<MotionReport>(const MotionRequest&)> on_motion;
   MotionReport motion_report;
   std::string stopped;
+  ObstaclesReport obstacles_report;
+  MergedCloud merged_report;
+  mutable MergedCloudRequest last_merged;
+  CellCalibrationRequest last_start_all;
+  std::vector<CellCalibrations::Refused> refused_starts;
 
   FakeCell() {
     pose_report.sensor_id = sensor_report.id = "kinect2";
@@ -97,6 +102,20 @@ class FakeCell : public CellService {
   }
   Result<Cloud> cloud(const CloudRequest& request) const override {
     return of_sensor(request.sensor_id, cloud_report);
+  }
+  Result<ObstaclesReport> obstacles(const std::string& sensor_id) const override {
+    return sensor_id.empty() ? obstacles_report : of_sensor(sensor_id, obstacles_report);
+  }
+  std::vector<SensorPair> pairs_report;
+  std::vector<SensorPair> cross_checks() const override { return pairs_report; }
+  Result<MergedCloud> merged_cloud(const MergedCloudRequest& request) const override {
+    last_merged = request;
+    if (merged_report.parts.empty()) return fail(ApiError::pose_not_valid);
+    return merged_report;
+  }
+  Result<CellCalibrations> start_calibrations(const CellCalibrationRequest& request) override {
+    last_start_all = request;
+    return CellCalibrations{{calibration_report}, refused_starts};
   }
 
   Result<MotionReport> start_motion(const MotionRequest& request) override {

@@ -128,8 +128,38 @@ int run_scenes(ScenesOptions options);
 
 struct WatchOptions {
   Paths urdfs, models;  ///< the scenes take the robots in turn
-  std::uint64_t first_seed = 1, events = 21;
+  std::uint64_t first_seed = 1, scenes = 3;
+  std::string event;  ///< the verdict that is right for it; empty: one of each kind in every scene
 };
 int run_watch(const WatchOptions& options);
+
+struct WatchHoursOptions {
+  Paths urdfs, models;
+  std::uint64_t first_seed = 1, cells = 6;
+  double hours = 1;                                 ///< of all cells together
+  std::filesystem::path innovations = "/dev/null";  ///< to write them to
+};
+int run_watch_hours(const WatchHoursOptions& options);
+
+struct WatchTailOptions {
+  Paths innovations;
+  double hours = 72, block_s = 60;
+  std::uint64_t seed = 1;
+};
+int run_watch_tail(const WatchTailOptions& options);
+
+struct WatchCreepOptions {
+  Paths urdfs, models;
+  std::uint64_t first_seed = 1, cells = 8;
+  double per_hour_mm = 1;  ///< or mrad
+  double seen_s = 1;       ///< of every minute
+};
+int run_watch_creep(const WatchCreepOptions& options);
+struct PairsOptions {
+  Paths urdfs, models;  ///< the scenes take the robots in turn
+  std::uint64_t first_seed = 1, scenes = 20;
+  std::size_t postures = 6;
+};
+int run_pairs(const PairsOptions& options);
 
 }  // namespace calibrd::bench

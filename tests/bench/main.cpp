@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "bench.hpp"
 #include "core/base/memory.hpp"
@@ -35,12 +38,13 @@ CLI::App* add_global(CLI::App& app, GlobalOptions& options) {
   return command;
 }
 
-void add_render(CLI::App& app, RenderOptions& render) {
+CLI::App* add_render(CLI::App& app, RenderOptions& render) {
   CLI::App* command = app.add_subcommand("render", "time the virtual sensor, joint update included");
   command->add_option("URDF", render.urdf)->required();
   command->add_option("--models", render.models);
   command->add_option("--distance-m", render.distance_m)->check(CLI::Range(0.1, 100.0));
   command->add_option("--runs", render.runs)->check(CLI::Range(1, 1000000));
+  return command;
 }
 
 CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
@@ -128,8 +132,73 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
       ->required();
   command->add_option("--models", watch.models, "folders to look robot models up in");
   command->add_option("--first-seed", watch.first_seed);
-  command->add_option("--events", watch.events)->check(CLI::Range(1, 1000000));
+  command->add_option("--scenes", watch.scenes, "seeds; not each has a scene that can be watched")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--event", watch.event, "only of this kind: the verdict that is right for it");
   return command;
+}
+
+CLI::App* add_watch_hours(CLI::App& app, WatchHoursOptions& hours) {
+  CLI::App* command = app.add_subcommand("watch-hours", "watch sensors that stand in cells at work");
+  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
+  command->add_option("--models", hours.models, "folders to look robot models up in");
+  command->add_option("--first-seed", hours.first_seed);
+  command->add_option("--cells", hours.cells)->check(CLI::Range(1, 100000));
+  command->add_option("--hours", hours.hours, "of all cells together")->check(CLI::Range(0.0, 1e5));
+  command->add_option("--innovations", hours.innovations, "file to write them to, for watch-tail");
+  return command;
+}
+
+CLI::App* add_watch_tail(CLI::App& app, WatchTailOptions& tail) {
+  CLI::App* command = app.add_subcommand("watch-tail", "recorded innovations through the test alone");
+  command->add_option("INNOVATIONS", tail.innovations, "files of watch-hours")->required();
+  command->add_option("--hours", tail.hours, "to draw from their blocks")->check(CLI::Range(0.0, 1e6));
+  command->add_option("--block-s", tail.block_s)->check(CLI::Range(1.0, 1e6));
+  command->add_option("--seed", tail.seed);
+  return command;
+}
+
+CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
+  CLI::App* command = app.add_subcommand("watch-creep", "watch sensors that creep while they warm up");
+  command->add_option("--robot", creep.urdfs, "URDF; may be repeated, the cells take them in turn")
+      ->required();
+  command->add_option("--models", creep.models, "folders to look robot models up in");
+  command->add_option("--first-seed", creep.first_seed);
+  command->add_option("--cells", creep.cells)->check(CLI::Range(1, 100000));
+  command->add_option("--per-hour-mm", creep.per_hour_mm, "or mrad")->check(CLI::Range(0.01, 1e3));
+  command->add_option("--seen-s", creep.seen_s, "of every minute")->check(CLI::Range(0.1, 60.0));
+  return command;
+}
+
+CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
+  CLI::App* command =
+      app.add_subcommand("pairs", "calibrate two sensors of random scenes, check them against each other");
+  command->add_option("--robot", pairs.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command->add_option("--models", pairs.models, "folders to look robot models up in");
+  command->add_option("--first-seed", pairs.first_seed);
+  command->add_option("--scenes", pairs.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", pairs.postures)->check(CLI::Range(2, 1000));
+  return command;
+}
+
+int run_checked_scenes(const ScenesOptions& scenes) {
+  if (!scenes.bound || (scenes.noise_only && scenes.depth_only)) return run_scenes(scenes);
+  std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
+  return 2;
+}
+
+struct Command {
+  const CLI::App* declared;
+  std::function<int()> run;
+};
+
+template <class Options, class Run>
+Command command(CLI::App& app, CLI::App* (*declare)(CLI::App&, Options&), Run run) {
+  const auto options = std::make_shared<Options>();
+  const CLI::App* declared = declare(app, *options);
+  return {declared, [options, run] { return run(*options); }};
 }
 
 }  // namespace
@@ -138,39 +207,25 @@ int main(int argc, char** argv) {
   calibrd::keep_freed_memory();
   CLI::App app("Measures calibrd. Prints JSON lines.");
   app.require_subcommand(1);
-  FineOptions fine;
-  GlobalOptions global;
-  RenderOptions render;
-  ScenesOptions scenes;
-  RegisterOptions clouds;
-  TrackOptions track;
-  WatchOptions watch;
-  const CLI::App* fine_command = add_fine(app, fine);
-  const CLI::App* global_command = add_global(app, global);
-  add_render(app, render);
-  const CLI::App* scenes_command = add_scenes(app, scenes);
-  const CLI::App* register_command = add_register(app, clouds);
-  const CLI::App* watch_command = add_watch(app, watch);
-  const CLI::App* track_command = add_track(app, track);
-  StepOptions step;
-  MovingBenchOptions moving;
-  const CLI::App* step_command = add_step(app, step);
-  const CLI::App* moving_command = add_moving(app, moving);
+  const std::vector<Command> commands{command(app, add_fine, run_fine),
+                                      command(app, add_global, run_global),
+                                      command(app, add_render, run_render),
+                                      command(app, add_scenes, run_checked_scenes),
+                                      command(app, add_register, run_register),
+                                      command(app, add_watch, run_watch),
+                                      command(app, add_watch_tail, run_watch_tail),
+                                      command(app, add_watch_creep, run_watch_creep),
+                                      command(app, add_watch_hours, run_watch_hours),
+                                      command(app, add_pairs, run_pairs),
+                                      command(app, add_track, run_track),
+                                      command(app, add_step, run_step),
+                                      command(app, add_moving, run_moving)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (step_command->parsed()) return run_step(step);
-  if (moving_command->parsed()) return run_moving(moving);
-  if (register_command->parsed()) return run_register(clouds);
-  if (watch_command->parsed()) return run_watch(watch);
-  if (track_command->parsed()) return run_track(track);
-  if (global_command->parsed()) return run_global(global);
-  if (scenes.bound && !(scenes.noise_only && scenes.depth_only)) {
-    std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
-    return 2;
-  }
-  if (scenes_command->parsed()) return run_scenes(scenes);
-  return fine_command->parsed() ? run_fine(fine) : run_render(render);
+  for (const Command& each : commands)
+    if (each.declared->parsed()) return each.run();
+  return 2;
 }

@@ -13,6 +13,7 @@ namespace {
 constexpr double kWorkSpeed_rad_s = 0.5, kHold_s = 1.0;
 constexpr double kStillSpeed_rad_s = 0.002;
 constexpr double kBiasRamp_s = 2;
+constexpr double kFloor_m = -0.8;
 /// What nobody could see, hidden or out of view, is no event.
 constexpr float kSeenChange_m = 0.04F;
 constexpr std::size_t kSeenPixels = 800;
@@ -50,8 +51,10 @@ RunningCell::RunningCell(const Scene& scene, std::shared_ptr<const sim::SensorTa
                          std::uint64_t seed)
     : scene_(scene),
       state_(scene.truth.world->state),
-      model_(scene.truth.world->cell, std::move(tables)),
       random_(seed ^ 0xd21f7ULL),
+      cell_(scene.truth.world->cell),
+      company_(cell_, random_),
+      model_(cell_, std::move(tables)),
       T_base_sensor_(scene.truth.T_base_sensor),
       seed_(seed),
       depth_mm_(static_cast<std::size_t>(scene.camera.width) *
@@ -59,6 +62,7 @@ RunningCell::RunningCell(const Scene& scene, std::shared_ptr<const sim::SensorTa
   for (const auto& name : scene.robot->model.position_names())
     order_.push_back(static_cast<std::size_t>(std::ranges::find(scene.truth.joint_names, name) -
                                               scene.truth.joint_names.begin()));
+  state_.sensors[0].infrared.texture = 0;  // nobody looks at the image
   state_.motion.place(scene.truth.postures.front(), 0);
   state_.motion.visit(scene.truth.postures, sim::Profile::minimum_jerk, kWorkSpeed_rad_s, kHold_s, 0);
 }
@@ -70,6 +74,7 @@ RunningCell::Frame RunningCell::next() {
     sensor.depth.offset_m =
         std::lerp(bias_from_m_, bias_to_m_, std::min(1.0, (time_s() - bias_since_s_) / kBiasRamp_s));
   sensor.T_base_sensor = sim::PoseValues::of(T_base_sensor_);
+  company_.move(state_.motion.positions_at(now_ns_), now_ns_);
   model_.expose(state_, sensor, now_ns_, seed_ * 1'000'003 + ++frame_, depth_mm_, {});
   Frame frame;
   frame.view.depth = {scene_.camera.width, scene_.camera.height, 0.001, depth_mm_};
@@ -88,20 +93,34 @@ Eigen::Vector3d RunningCell::random_direction() {
   return Eigen::Vector3d(random_.normal(), random_.normal(), random_.normal()).normalized();
 }
 
+double RunningCell::moved_m() const {
+  return (T_base_sensor_.translation() - scene_.truth.T_base_sensor.translation()).norm();
+}
+
+double RunningCell::turned_rad() const {
+  return log_so3(T_base_sensor_.linear() * scene_.truth.T_base_sensor.linear().transpose()).norm();
+}
+
 void RunningCell::move_sensor(double shift_m, double turn_rad) {
   T_base_sensor_.linear() = Eigen::AngleAxisd(turn_rad, random_direction()) * T_base_sensor_.linear();
   T_base_sensor_.translation() += shift_m * random_direction();
 }
 
-void RunningCell::send_person() {
-  // Somewhere between sensor and robot, across the line of sight.
+sim::PersonState RunningCell::walk_across(double part) {
   const Eigen::Vector3d sensor = T_base_sensor_.translation();
   const Eigen::Vector2d sight = -sensor.head<2>().normalized(), across(-sight.y(), sight.x());
-  const double part = random_.uniform(0.25, 0.7), side = random_.chance(0.5) ? 1 : -1;
+  const double side = random_.chance(0.5) ? 1 : -1;
   const Eigen::Vector2d middle = (1 - part) * sensor.head<2>();
   const Eigen::Vector2d from = middle + side * 2.2 * across + random_.uniform(-0.3, 0.3) * sight,
                         to = middle - side * 2.2 * across + random_.uniform(-0.3, 0.3) * sight;
-  state_.person = {1, now_ns_, {from.x(), from.y()}, {to.x(), to.y()}, -0.8, random_.uniform(0.6, 1.4)};
+  return {1, now_ns_, {from.x(), from.y()}, {to.x(), to.y()}, kFloor_m, random_.uniform(0.6, 1.4)};
+}
+
+void RunningCell::send_people() {
+  send_people_away();
+  state_.person = walk_across(random_.uniform(0.25, 0.7));
+  const std::uint64_t more = random_.bits() % Company::kPeople;
+  for (std::size_t i = 0; i < more; ++i) company_.send(i, walk_across(random_.uniform(0.25, 1.6)));
 }
 
 std::string RunningCell::change_object(std::size_t chosen) {
@@ -161,8 +180,8 @@ std::string RunningCell::stage(Event event) {
       return said("sensor by %.1f mm, %.1f mrad", 1e3 * shift_m, 1e3 * turn_rad);
     }
     case Event::something_in_front:
-      send_person();
-      return "person";
+      send_people();
+      return "people";
     case Event::scene_changed:
       return change_scene();
     case Event::robot_model_wrong: {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/company.hpp"
 #include "tests/bench/scene.hpp"
 
 namespace calibrd::bench {
@@ -38,10 +39,15 @@ class RunningCell {
     bool still = false;
   };
   Frame next();
+  /// Lets time pass unseen.
+  void skip(double seconds) { now_ns_ += static_cast<std::int64_t>(1e9 * seconds); }
   double time_s() const { return 1e-9 * static_cast<double>(now_ns_); }
 
-  /// Moves the sensor, turned about its own place, in random directions.
+  /// Moves the sensor, turned about its own place, in random directions ...
   void move_sensor(double shift_m, double turn_rad);
+  /// ... or to a place.
+  void put_sensor(const Pose& T_base_sensor) { T_base_sensor_ = T_base_sensor; }
+  Eigen::Vector3d random_direction();
   /// Something of that kind, of random size and place. Says what it did. Moves are of 3 mm or 3 mrad and
   /// more.
   std::string stage(Event event);
@@ -49,22 +55,32 @@ class RunningCell {
   sim::WorldState& state() { return state_; }
   sim::Random& random() { return random_; }
   const Pose& T_base_sensor() const { return T_base_sensor_; }
-  /// A walk across the space between the sensor and the robot, once.
-  void send_person();
-  void send_person_away() { state_.person.present = 0; }
+  /// How far the sensor has come from where it was at first.
+  double moved_m() const;
+  double turned_rad() const;
+  /// One to three people walk to and fro across the space between the sensor and the robot.
+  void send_people();
+  void send_people_away() {
+    state_.person.present = 0;
+    company_.send_all_away();
+  }
+  Company& company() { return company_; }
+  /// Somebody walks across between sensor and robot, `part` of the way from the sensor.
+  sim::PersonState walk_across(double part);
   /// Takes away, brings back or shifts one of the things that stand around, so that the sensor sees it.
   /// Empty: none of them can be seen.
   std::string change_scene();
 
  private:
-  Eigen::Vector3d random_direction();
   std::string change_object(std::size_t chosen);
   std::vector<float> true_depth_m();
 
   const Scene& scene_;
   sim::WorldState state_;
-  sim::SensorModel model_;
   sim::Random random_;
+  sim::Cell cell_;
+  Company company_;
+  sim::SensorModel model_;
   Pose T_base_sensor_;
   std::uint64_t frame_ = 0, seed_;
   std::int64_t now_ns_ = 0;

@@ -139,7 +139,7 @@ class Motion(CellTest):
                 self.refused(daemon, 409, "motion_not_possible", route="tour")
 
     def test_a_state_link_that_dies_or_freezes_stops_it(self):
-        for mode, message in (("refuse", "link"), ("silent", "sends nothing|no fresh"),
+        for mode, message in (("refuse", "link"), ("silent", "sends nothing|no fresh|no joint"),
                               ("status_only", "no joint positions|no fresh joint"), ("frozen", "commanded path")):
             with self.subTest(mode=mode):
                 simulator, daemon = self.cell()

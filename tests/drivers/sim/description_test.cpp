@@ -53,7 +53,7 @@ TEST(Description, MistakesAreNamedWithTheirPlace) {
   EXPECT_NE(complaint(R"(, "wall": 1)").find("wall"), std::string::npos);
   EXPECT_NE(complaint(R"(, "sensors": 5)").find("sensors"), std::string::npos);
   EXPECT_NE(complaint(R"(, "joint_zero_rad": [1])").find("joint_zero_rad"), std::string::npos);
-  EXPECT_NE(complaint(R"(, "sensors": [{},{},{},{},{}])").find("sensors"), std::string::npos);
+  EXPECT_NE(complaint(R"(, "sensors": [{},{},{},{},{},{},{},{},{}])").find("sensors"), std::string::npos);
   EXPECT_EQ(complaint(R"(, "note": "all is well")"), "");
 }
 

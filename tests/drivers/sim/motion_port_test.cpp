@@ -133,9 +133,10 @@ TEST_F(MotionPort, ARobotWithAProgramOfItsOwnTakesNoCommandsUntilItIsHeld) {
 TEST_F(MotionPort, StatusSaysWhatTheSettingsSay) {
   settings_.automatic = 0;
   settings_.e_stopped = 1;
-  const auto sends = controller_cycle(world_, settings_, {}, now_ns_);
+  const auto sends = controller_cycle(world_, settings_, {}, now_ns_, 0);
   StatusRecord expected;
   expected.e_stopped = 1;
+  expected.drives_powered = 0;
   expected.mode = 1;
   expected.motion_possible = 0;
   EXPECT_EQ(sends.back(), status_message(ByteOrder::big, expected));

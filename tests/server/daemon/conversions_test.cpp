@@ -74,13 +74,13 @@ TEST(Conversions, KeysOfTimeReachTheCell) {
   Config config;
   SensorConfig sensor;
   EXPECT_TRUE(sensor_setup("eye", sensor).estimates_time_offset);
-  EXPECT_FALSE(cell_settings(config, "").gate.timed_views);
+  EXPECT_TRUE(cell_settings(config, "").gate.timed_views);  // for checks
+  EXPECT_FALSE(cell_settings(config, "").jobs.collector.moving_views);
   EXPECT_TRUE(cell_settings(config, "").gate.trust_in_motion);
   sensor.time_offset = "off";
   config.calibration.views = "still_or_timed";
   config.robot.trust_in_motion = false;
   EXPECT_FALSE(sensor_setup("eye", sensor).estimates_time_offset);
-  EXPECT_TRUE(cell_settings(config, "").gate.timed_views);
   EXPECT_TRUE(cell_settings(config, "").jobs.collector.moving_views);
   EXPECT_FALSE(cell_settings(config, "").gate.trust_in_motion);
 }

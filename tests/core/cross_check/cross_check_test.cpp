@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/cross_check/cross_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/cross_check/fuse_poses.hpp"
+#include "core/geometry/pose.hpp"
+#include "tests/core/registration/scene.hpp"
+#include "tests/core/virtual_cell/urdf_text.hpp"
+
+namespace calibrd {
+namespace {
+
+using namespace test;
+
+constexpr double kSigma_m = 5e-4, kSigma_rad = 5e-4;
+
+/// Two sensors before the arm in its clutter, each with its background as it learnt it from the same
+/// postures.
+class TwoSensors : public ::testing::Test {
+ protected:
+  TwoSensors()
+      : left_T_base_sensor_(true_T_base_sensor()),
+        right_T_base_sensor_(looking_at({1.2, -0.75, 1.0}, {0.1, 0, 0.4})) {
+    learn(left_T_base_sensor_, 1, left_);
+    scene_.offset_m = 0.004;  // another sensor, another bias
+    learn(right_T_base_sensor_, 100, right_);
+    covariance_.setZero();
+    covariance_.diagonal() << Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad),
+        Eigen::Vector3d::Constant(kSigma_m * kSigma_m);
+  }
+
+  CheckedSensor left() const { return {left_, left_T_base_sensor_, covariance_, {}}; }
+  CheckedSensor right(const Pose& T_base_sensor) const { return {right_, T_base_sensor, covariance_, {}}; }
+
+  Pose left_T_base_sensor_, right_T_base_sensor_;
+  Matrix6d covariance_;
+
+ private:
+  void learn(const Pose& T_base_sensor, std::uint64_t seed, BackgroundMap& background) {
+    static const VirtualCell arm(test_arm());
+    RobotMask mask(arm, scene_.camera);
+    std::vector<View> views;
+    std::vector<std::vector<std::uint8_t>> masks;
+    for (const auto& joints : postures(3)) {
+      scene_.seed = seed++;
+      views.push_back(render_view(joints, T_base_sensor, scene_));
+      masks.push_back(mask.at(joints, T_base_sensor));
+    }
+    background.learn(views, masks);
+  }
+
+  SceneSettings scene_ = [] {
+    SceneSettings scene;
+    scene.clutter = true;
+    return scene;
+  }();
+  BackgroundMap left_{scene_.camera}, right_{scene_.camera};
+};
+
+TEST_F(TwoSensors, ThatStandWhereTheirPosesSayAgreeWhateverTheirRangeOffsets) {
+  const CrossCheck check = cross_check(left(), right(right_T_base_sensor_));
+  ASSERT_TRUE(check.has_overlap) << check.pairs;
+  EXPECT_LT(check.sigmas, 1.5) << 1e3 * check.shift_m << " mm " << 1e3 * check.turn_rad << " mrad";
+  EXPECT_FALSE(check.disagrees());
+}
+
+TEST_F(TwoSensors, OneOfWhichIsOffByTwentyMillimetresAndTwentyMilliradiansDisagree) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const CrossCheck check = cross_check(left(), right(off_by(right_T_base_sensor_, 0.02, 0.02, seed)));
+    EXPECT_TRUE(check.disagrees()) << seed << ": " << check.sigmas << " sigmas of " << check.pairs
+                                   << " pairs";
+  }
+}
+
+TEST_F(TwoSensors, OneOfWhichIsElsewhereAltogetherDoNotAgree) {
+  const CrossCheck check = cross_check(left(), right(off_by(right_T_base_sensor_, 0.4, 0.3, 3)));
+  EXPECT_TRUE(check.disagrees() || !check.has_overlap) << check.sigmas;
+}
+
+TEST_F(TwoSensors, AnErrorOfOneIsMeasuredAsTheTurnAndShiftThatUndoesIt) {
+  Vector6d delta;
+  delta << 0.004, -0.003, 0.005, 0.006, -0.004, 0.005;
+  const Pose wrong = perturbed(right_T_base_sensor_, delta);
+  const CrossCheck check = cross_check(left(), right(wrong));
+  const Eigen::Vector3d p = check.middle_base;
+  const Eigen::Vector3d seen_at = wrong * (right_T_base_sensor_.inverse() * p);
+  EXPECT_LT((check.turn_shift.head<3>() + delta.head<3>()).norm(), 0.002);
+  EXPECT_LT((seen_at + check.turn_shift.tail<3>() - p).norm(), 0.005);  // of 9 mm; its own sigma is 2 mm
+}
+
+TEST_F(TwoSensors, ThatSeeNothingInCommonSayNothing) {
+  const BackgroundMap nothing(ideal_kinect2());
+  const CrossCheck check = cross_check(left(), {nothing, right_T_base_sensor_, covariance_, {}});
+  EXPECT_FALSE(check.has_overlap);
+  EXPECT_FALSE(check.disagrees());
+}
+
+TEST_F(TwoSensors, ThePoorerPoseGainsFromTheBetterWhenTheyAreFused) {
+  const Pose wrong = off_by(right_T_base_sensor_, 0.004, 0.003, 2);
+  CheckedSensor poor = right(wrong);
+  poor.covariance *= 64;
+  const CheckedSensor good = left();
+  const FusedPoses fused = fuse_poses(good, poor, cross_check(good, poor));
+  const Vector6d before = difference(right_T_base_sensor_, wrong),
+                 after = difference(right_T_base_sensor_, fused.second_T_base_sensor);
+  EXPECT_LT(after.head<3>().norm(), 0.6 * before.head<3>().norm());
+  EXPECT_LT(fused.second_covariance.trace(), 0.5 * poor.covariance.trace());
+  EXPECT_LT(difference(left_T_base_sensor_, fused.first_T_base_sensor).tail<3>().norm(), 2 * kSigma_m);
+}
+
+}  // namespace
+}  // namespace calibrd

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+// What the robot says beside the background.
+#include "tests/core/drift/watched_room.hpp"
+
+namespace calibrd {
+namespace {
+
+using namespace test;
+using RobotsWord = WatchedRoom;
+
+TEST_F(RobotsWord, BackgroundInPlaceAndRobotOffIsTheModel) {
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    for (int i = 0; i < 3; ++i) check(shifted(0.012, 0, 0));
+  }
+  watch_for(0.1);
+  EXPECT_EQ(verdict(), DriftVerdict::robot_model_wrong);
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    check(Vector6d::Zero());
+  }
+  watch_for(0.1);
+  EXPECT_EQ(verdict(), DriftVerdict::in_place);
+}
+
+TEST_F(RobotsWord, OnePostureAloneSaysNothing) {
+  watch_for(0.5);
+  for (int i = 0; i < 20; ++i) check(shifted(0.012, 0, 0));
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::in_place);
+  EXPECT_TRUE(watch_.wants_check());
+}
+
+TEST_F(RobotsWord, WhatMovedAsOneIsTheSceneWhenTheRobotStands) {
+  // The sensor's move stands for that of all it sees but the robot.
+  watch_for(1);
+  moved_ = shifted(0.012, 0, 0);
+  const auto robot_stands = [&] { check(Vector6d::Zero()); };
+  EXPECT_EQ(watch_for(1, robot_stands), DriftVerdict::scene_changed);
+  EXPECT_LT(moved_at_frame_, 0);
+  // Once it has stood for some seconds it is the background.
+  EXPECT_EQ(watch_for(6, robot_stands), DriftVerdict::in_place);
+  watch_for(3);
+  EXPECT_LT(moved_at_frame_, 0);
+}
+
+TEST_F(RobotsWord, ItMustBeNewerThanWhatTheBackgroundSays) {
+  watch_for(1);
+  check(Vector6d::Zero());
+  watch_for(0.1);
+  moved_ = shifted(0.012, 0, 0);
+  EXPECT_EQ(watch_for(1), DriftVerdict::sensor_moved);
+}
+
+TEST_F(RobotsWord, ARobotThatMovedAlongConfirms) {
+  watch_for(1);
+  moved_ = shifted(0.006, 0, 0);
+  EXPECT_EQ(watch_for(1, [&] { check(moved_); }), DriftVerdict::sensor_moved);
+}
+
+TEST_F(RobotsWord, WithoutBackgroundARobotThatIsOffMeansTheSensor) {
+  watch_.set_pose(true_T_base_sensor());
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    for (int i = 0; i < 3; ++i) check(shifted(0.012, 0, 0));
+  }
+  watch_for(0.1);
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
+TEST_F(RobotsWord, WithoutBackgroundARobotThatAgreesIsInPlace) {
+  watch_.set_pose(true_T_base_sensor());
+  watch_for(1);
+  check(Vector6d::Zero());
+  EXPECT_EQ(watch_for(0.5), DriftVerdict::in_place);
+  EXPECT_FALSE(watch_.is_in_place());  // which is the background's word
+}
+
+class BeforeAWall : public WatchedRoom {
+ protected:
+  BeforeAWall() : WatchedRoom(Room::single_wall()) {}
+  Vector6d along_the_wall(double by_m) const {
+    Vector6d delta = Vector6d::Zero();
+    delta.tail<3>() = by_m * true_T_base_sensor().linear().col(0);
+    return delta;
+  }
+};
+
+TEST_F(BeforeAWall, AloneItIsNoEvidence) {
+  EXPECT_EQ(watch_for(2), DriftVerdict::no_evidence);
+  EXPECT_FALSE(watch_.is_in_place());
+}
+
+TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
+  watch_for(1);
+  check(Vector6d::Zero());
+  EXPECT_EQ(watch_for(0.2), DriftVerdict::in_place);
+  moved_ = along_the_wall(0.012);
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    for (int i = 0; i < 3; ++i) check(moved_);
+  }
+  watch_for(0.1);
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
+TEST_F(BeforeAWall, ATurnIsSeenByTheWallAlone) {
+  watch_for(1);
+  moved_.head<3>() = 0.004 * true_T_base_sensor().linear().col(0);
+  EXPECT_EQ(watch_for(1), DriftVerdict::sensor_moved);
+}
+
+}  // namespace
+}  // namespace calibrd
