@@ -191,15 +191,9 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
 void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
                                  BackgroundObservation& observation) {
   states_.assign(map_.cells().size(), CellState::unknown);
-  // An edge changes about as the plane before it in the picture does.
-  expected_change_m_.resize(map_.cells().size());
-  std::size_t next = 0;
-  for (const Row& row : rows_) {
-    const float change = row.slope.head<kParameters>().dot(fit.solution.cast<float>());
-    for (; next <= row.cell; ++next) expected_change_m_[next] = change;
-  }
-  for (; next < expected_change_m_.size(); ++next)
-    expected_change_m_[next] = next > 0 ? expected_change_m_[next - 1] : 0;
+  // Not less the shift that was found: a sensor that has moved far is to be searched for, not explained away.
+  const bool is_known = std::sqrt(fit.covariance(6, 6)) < BackgroundObservation::kKnownOffset_m;
+  const auto offset = is_known ? static_cast<float>(fit.solution[6]) : 0.0F;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BackgroundCell& known = map_.cells()[i];
     if (known.depth_m <= 0) continue;
@@ -209,7 +203,7 @@ void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit&
       state = CellState::robot;
     else if (depth_m_[i] <= 0)
       state = CellState::dark;
-    else if (const float change = depth_m_[i] - known.depth_m - expected_change_m_[i]; change < -gate)
+    else if (const float change = depth_m_[i] - known.depth_m - offset; change < -gate)
       state = CellState::nearer;
     else
       state = change > gate ? CellState::farther : CellState::same;

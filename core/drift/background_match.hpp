@@ -96,7 +96,6 @@ class BackgroundMatcher {
   Information spurious_ = Information::Zero();  // information that is but noise of the planes' normals
   std::size_t clusters_ = 0;
   std::vector<float> depth_m_;
-  std::vector<float> expected_change_m_;  // of the depth, by the fit
   std::vector<CellState> states_;
   std::vector<float> whitened_;
   std::vector<double> pulls_;
