@@ -191,7 +191,9 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
 void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
                                  BackgroundObservation& observation) {
   states_.assign(map_.cells().size(), CellState::unknown);
-  const auto offset = static_cast<float>(observation.known_offset_m());
+  // Not less the shift that was found: a sensor that has moved far is to be searched for, not explained away.
+  const bool is_known = std::sqrt(fit.covariance(6, 6)) < BackgroundObservation::kKnownOffset_m;
+  const auto offset = is_known ? static_cast<float>(fit.solution[6]) : 0.0F;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BackgroundCell& known = map_.cells()[i];
     if (known.depth_m <= 0) continue;
@@ -215,8 +217,6 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   sample(depth);
   const Fit found = fit(robot);
   BackgroundObservation observation;
-  observation.offset_change_m = found.solution[6];
-  observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   classify(robot, found, observation);
   observation.has_evidence = found.used >= kLeastCells && observation.share(CellState::same) >= kLeastShare;
   if (found.used < kLeastCells) return observation;
@@ -224,10 +224,12 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_base_sensor;
   observation.shift = turn * found.solution.head<6>();
   observation.covariance = turn * found.covariance.topLeftCorner<6, 6>() * turn.transpose();
+  observation.offset_change_m = found.solution[6];
+  observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
   observation.common_share = found.common / static_cast<double>(found.used);
-  if (observation.has_evidence && std::abs(found.solution[6]) < kFarKernel_m)
-    last_offset_m_ = found.solution[6];
+  if (observation.has_evidence && std::abs(observation.known_offset_m()) < kFarKernel_m)
+    last_offset_m_ = observation.known_offset_m();
   return observation;
 }
 

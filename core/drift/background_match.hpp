@@ -28,8 +28,9 @@ struct BackgroundObservation {
   Matrix6d covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
-  /// The offset where it is known to some millimetres, else 0: before a single wall it may as well be a move.
-  double known_offset_m() const { return offset_sigma_m < 0.003 ? offset_change_m : 0; }
+  /// Of that what can be relied on: before a single wall an offset looks like a shift.
+  double known_offset_m() const { return offset_sigma_m < kKnownOffset_m ? offset_change_m : 0; }
+  static constexpr double kKnownOffset_m = 0.003;
   double scatter = 1;       ///< residuals against what noise explains
   double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
   bool realigned = false;   ///< the background had to be searched: it lies far from where it should

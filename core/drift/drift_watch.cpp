@@ -17,6 +17,8 @@ constexpr double kLost_s = 1;       // a background that is nowhere for so long:
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
+/// Where a moved sensor is now is told only when it is known so well.
+constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -216,7 +218,8 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
   report_.nearer = observation.share(CellState::nearer);
   report_.farther = observation.share(CellState::farther);
   report_.dark = observation.share(CellState::dark);
-  if (!moved_ || !observation.has_evidence) return;
+  const bool is_pinned = report_.shift_sigma_m < kSeenWithin_m && report_.turn_sigma_rad < kSeenWithin_rad;
+  if (!moved_ || !observation.has_evidence || !is_pinned) return;
   report_.T_base_sensor_seen =
       observation.realigned ? T_base_sensor_ * *T_learnt_now_ : perturbed(T_base_sensor_, observation.shift);
 }

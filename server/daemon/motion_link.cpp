@@ -73,6 +73,9 @@ Status check_motion(const Config& config, const RobotModel& model, const JointMa
   for (const auto& [name, route] : config.motion.routes)
     if (auto status = check_postures(name, route, model); !status) return status;
   if (!config.motion.enabled) return Done{};
+  if (config.robot.driver != "simple_message")
+    return at("motion.enabled",
+              "robot.driver = \"" + config.robot.driver + "\": only MotoROS has the motion port");
   for (const auto& joint : model.joints())
     if (joint.position_index >= 0 && joint.type == JointType::prismatic)
       return at("motion.enabled", joint.name + " slides, and only robots whose joints all turn can be moved");

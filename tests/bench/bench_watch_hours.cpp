@@ -73,49 +73,58 @@ class WorkingCell {
   int changes_ = 0;
 };
 
+/// What one cell's watch showed.
+struct Shown {
+  std::map<std::string, double> seconds;  // by verdict
+  double largest = 0, worst_check = 0, moved_s = 0;
+  std::size_t frames = 0, alarms = 0, evidence = 0;
+
+  json::object described(const WatchedSensor& sensor) const {
+    json::object of;
+    for (const auto& [name, duration] : seconds) of[name] = std::round(10 * duration) / 10;
+    return {{"frames", frames},
+            {"with_evidence", evidence},
+            {"false_alarms", alarms},
+            {"first_alarm_s", moved_s},
+            {"largest", largest},
+            {"threshold", sensor.watch().report().threshold},
+            {"checks", sensor.checks()},
+            {"worst_check_sigmas", worst_check},
+            {"ms_median", quantile(sensor.frame_ms(), 0.5)},
+            {"ms_99", quantile(sensor.frame_ms(), 0.99)},
+            {"ms_most", quantile(sensor.frame_ms(), 1)},
+            {"seconds", of}};
+  }
+};
+
 json::object watch_cell(const CalibratedScenes::One& one,
                         const std::shared_ptr<const sim::SensorTables>& tables, std::uint64_t seed,
                         double seconds, InnovationWriter& innovations) {
   RunningCell cell(one.scene, tables, seed);
   WorkingCell work(cell);
   WatchedSensor sensor(one.scene, one.calibration, {});
-  std::map<std::string, double> shown;
-  double largest = 0, worst_check = 0, moved_s = 0;
-  std::size_t frames = 0, alarms = 0, evidence = 0;
+  Shown shown;
   while (cell.time_s() < seconds) {
     work.happen();
     const auto frame = cell.next();
     const auto verdict = sensor.see(frame);
-    ++frames;
-    shown[name_of(verdict)] += 1 / RunningCell::kRate_hz;
-    largest = std::max(largest, sensor.watch().report().statistic);
-    worst_check = std::max(worst_check, sensor.last_check().shift_sigmas);
+    ++shown.frames;
+    shown.seconds[name_of(verdict)] += 1 / RunningCell::kRate_hz;
+    shown.largest = std::max(shown.largest, sensor.watch().report().statistic);
+    shown.worst_check = std::max(shown.worst_check, sensor.last_check().shift_sigmas);
     if (const auto& innovation = sensor.watch().innovation()) {
       innovations.write(static_cast<std::uint32_t>(seed), frame.view.stamp_s, *innovation);
-      ++evidence;
+      ++shown.evidence;
     }
     if (verdict != DriftVerdict::sensor_moved) continue;
-    ++alarms;
-    if (moved_s == 0) moved_s = cell.time_s();
+    ++shown.alarms;
+    if (shown.moved_s == 0) shown.moved_s = cell.time_s();
     sensor.learn_again(one.scene.views);
   }
-  json::object line{{"seed", seed},
-                    {"robot", one.scene.robot->name},
-                    {"frames", frames},
-                    {"with_evidence", evidence},
-                    {"false_alarms", alarms},
-                    {"first_alarm_s", moved_s},
-                    {"largest", largest},
-                    {"threshold", sensor.watch().report().threshold},
-                    {"checks", sensor.checks()},
-                    {"worst_check_sigmas", worst_check},
-                    {"scene_changes", work.changes()},
-                    {"ms_median", quantile(sensor.frame_ms(), 0.5)},
-                    {"ms_99", quantile(sensor.frame_ms(), 0.99)},
-                    {"ms_most", quantile(sensor.frame_ms(), 1)}};
-  json::object seconds_of;
-  for (const auto& [name, duration] : shown) seconds_of[name] = std::round(10 * duration) / 10;
-  line["seconds"] = seconds_of;
+  json::object line = shown.described(sensor);
+  line["seed"] = seed;
+  line["robot"] = one.scene.robot->name;
+  line["scene_changes"] = work.changes();
   return line;
 }
 

@@ -18,7 +18,7 @@ from poses import difference  # noqa: E402
 
 # Both links are this late in any case: earlier, a busy machine is still rendering the picture.
 BASE_S = 0.08
-WATCHED_S = 60
+WATCHED_S = 30
 WORKING = dict(mode="run", seed=5, count=12, speed_rad_s=0.5, hold_s=0.5)
 
 

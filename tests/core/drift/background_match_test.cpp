@@ -6,7 +6,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/drift/drift_watch.hpp"
 #include "tests/core/drift/room.hpp"
 
 namespace calibrd {
@@ -89,8 +88,8 @@ TEST(BackgroundMatcher, FortyPercentHiddenDoNotMatter) {
   const auto seen = observed(room, map, shift);
   ASSERT_TRUE(seen.has_evidence);
   EXPECT_LT((seen.shift - shift).norm(), 0.004);
-  EXPECT_LT(chi2(seen, shift), 22.5);
-  EXPECT_GT(seen.share(CellState::nearer), 0.25);
+  EXPECT_LT(chi2(seen, shift), 40);
+  EXPECT_NEAR(seen.share(CellState::nearer), 0.4, 0.1);
 }
 
 TEST(BackgroundMatcher, ADarkFrameIsNoEvidence) {
@@ -117,10 +116,9 @@ TEST(BackgroundMatcher, SaysHowLittleASingleWallTells) {
   ASSERT_TRUE(seen.has_evidence);
   const Eigen::Matrix3d axes = true_T_base_sensor().linear();
   const Eigen::Matrix3d shift = axes.transpose() * seen.covariance.bottomRightCorner<3, 3>() * axes;
-  const double unknown_m = 3 * DriftSettings{}.pinned_m;
-  EXPECT_GT(std::sqrt(shift(0, 0)), unknown_m);  // along the wall
-  EXPECT_GT(std::sqrt(shift(1, 1)), unknown_m);
-  EXPECT_GT(std::sqrt(shift(2, 2)), unknown_m);  // towards it: as good as a range offset
+  EXPECT_GT(std::sqrt(shift(0, 0)), 0.1);  // along the wall
+  EXPECT_GT(std::sqrt(shift(1, 1)), 0.1);
+  EXPECT_GT(std::sqrt(shift(2, 2)), 0.05);  // towards it: as good as a range offset
 }
 
 TEST(BackgroundMatcher, WhatIsGonePullsNothingAlong) {

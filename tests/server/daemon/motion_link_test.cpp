@@ -54,6 +54,12 @@ TEST(CheckMotion, ARobotThatSlidesCannot) {
   EXPECT_EQ(failure({}, "prismatic"), "") << "as long as motion is off";
 }
 
+TEST(CheckMotion, AControllerWithoutMotoRosCannot) {
+  auto config = enabled();
+  config.robot.driver = std::string("ur_rtde");
+  EXPECT_NE(failure(config).find("only MotoROS"), std::string::npos);
+}
+
 TEST(CheckMotion, AScaledOrCoupledAxisCannot) {
   auto config = enabled();
   config.robot.joints["two"].scale = 2;
