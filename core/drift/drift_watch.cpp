@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/drift/drift_watch.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -12,29 +11,16 @@
 namespace calibrd {
 namespace {
 
-constexpr double kEvidence_s = 1;   // without any for so long: no_evidence
 constexpr double kLost_s = 1;       // a background that is nowhere for so long: the sensor looks elsewhere
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
-/// Where a moved sensor is now is told only when it is known so well.
-constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01;
+/// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
+/// the background is still where it was: a fit to less settles anywhere.
+constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
-constexpr double kCheck_s = 2;    // a comparison with the robot is of now for so long
-/// CUSUM of how far off the robot looks, posture by posture: a comparison of a good model stays below 2.2
-/// standard deviations of what noise, model and joint zeros explain, in nearly every posture.
-constexpr double kRobotAllowance = 2.7, kPostureWeight = 2, kRobotLimit = 5.5;
-constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
-constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
-/// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
-/// the sensor has moved is not believed.
-constexpr double kDenial = 16;
-/// The sensor's own move may be what the robot shows when it leaves no more than this share of it (χ²)
-/// unexplained.
-constexpr double kUnexplainedShare = 0.4;
-constexpr double kMeanFrames = 7;  // that the mean of the test is of
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
@@ -101,7 +87,8 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     std::span<const std::uint8_t> robot;
     if (!frame.joint_positions_rad.empty()) robot = robot_.at(frame.joint_positions_rad, T_base_sensor_);
     auto observation = matcher_.match(frame.depth, robot, T_base_sensor_.linear());
-    if (!observation.has_evidence && frames_ % kRealignEvery == 0) realign(robot, observation);
+    const bool is_far = moved_ && observation.share(CellState::same) < kLeastSame;
+    if ((!observation.has_evidence || is_far) && frames_ % kRealignEvery == 0) realign(robot, observation);
     if (observation.has_evidence) evidence_s_ = frame_s_;
     follow_loss(observation, frame_s_);
     test(observation);
@@ -163,19 +150,6 @@ void DriftWatch::on_denial() {
   test_.reset();
 }
 
-/// For each hypothesis how badly the robot's apparent shift fits it.
-bool DriftWatch::robot_denies_the_shift(double now_s) const {
-  const double age = now_s - check_s_, onset = test_.run_length() / settings_.shift.rate_hz;
-  if (!check_ || !check_->enough_evidence || !check_->agrees || age > std::min(kCheck_s, onset)) return false;
-  const Matrix6d move = shift_of_point(check_->middle_base - T_base_sensor_.translation());
-  const Matrix6d back = shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
-  const Vector6d moved = move * (back * test_.mean()), seen = check_->turn_shift;
-  const Eigen::LDLT<Matrix6d> solver(check_->turn_shift_covariance);
-  const double stands = seen.dot(solver.solve(seen));
-  const Vector6d off = seen - moved;
-  return stands + kDenial < off.dot(solver.solve(off));
-}
-
 void DriftWatch::follow_offset(const BackgroundObservation& observation, double now_s) {
   if (!observation.has_evidence || observation.realigned) return;
   const double newest = 1 / (kOffsetMean_s * settings_.shift.rate_hz);
@@ -204,10 +178,6 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
     denied_s_ = now_s;
 }
 
-bool DriftWatch::robot_stands_since(double since_s) const {
-  return check_ && check_->agrees && check_s_ > since_s && frame_s_ - check_s_ < kCheck_s;
-}
-
 void DriftWatch::describe(const BackgroundObservation& observation) {
   report_.statistic = test_.statistic();
   const Vector6d mean = test_.mean();
@@ -219,64 +189,17 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
   report_.farther = observation.share(CellState::farther);
   report_.dark = observation.share(CellState::dark);
   const bool is_pinned = report_.shift_sigma_m < kSeenWithin_m && report_.turn_sigma_rad < kSeenWithin_rad;
-  if (!moved_ || !observation.has_evidence || !is_pinned) return;
+  const bool is_fit = observation.realigned || report_.same >= kLeastSame;
+  if (!moved_ || !observation.has_evidence || !is_pinned || !is_fit) return;
   report_.T_base_sensor_seen =
       observation.realigned ? T_base_sensor_ * *T_learnt_now_ : perturbed(T_base_sensor_, observation.shift);
-}
-
-void DriftWatch::add_check(const PoseCheck& check, double now_s) {
-  if (!check.enough_evidence) return;
-  check_ = check;
-  check_s_ = now_s;
-  follow_posture(check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained);
-  if (robot_statistic_ < 0.5 * kRobotLimit) model_wrong_ = false;
-  if (robot_statistic_ <= kRobotLimit || model_wrong_ || moved_) return;
-  if (is_robots_shift_possible())
-    moved_ = true;
-  else
-    model_wrong_ = true;
-}
-
-/// Comparisons of one posture all err alike, and a part in the gripper may look like the robot: a posture has
-/// one word, and one posture alone says nothing against the robot.
-void DriftWatch::follow_posture(double sigmas) {
-  bool same = posture_.size() == joints_.size();
-  for (std::size_t j = 0; same && j < joints_.size(); ++j)
-    same = std::abs(joints_[j] - posture_[j]) < kOtherPosture_rad;
-  if (!same) {
-    posture_ = joints_;
-    before_posture_ = std::min(robot_statistic_, kRobotLimit);  // what is mended shows soon
-    posture_sigmas_ = posture_checks_ = 0;
-  }
-  ++posture_checks_;
-  posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
-  const double word =
-      std::clamp(kPostureWeight * (posture_sigmas_ - kRobotAllowance), -kMostPerPosture, kMostPerPosture);
-  robot_statistic_ = std::max(0.0, before_posture_ + word);
-}
-
-/// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
-bool DriftWatch::is_robots_shift_possible() const {
-  if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
-  if (!(check_->shift_sigmas > 0))
-    return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
-  const Matrix6d move = shift_of_point(check_->middle_base - T_base_sensor_.translation()) *
-                        shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
-  const Vector6d left = check_->turn_shift - move * test_.mean();
-  Matrix6d mean_covariance = *last_covariance_ / kMeanFrames;
-  mean_covariance.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);
-  mean_covariance.diagonal().tail<3>().array() += std::pow(settings_.shift.tolerance_m, 2);
-  const Matrix6d covariance = check_->turn_shift_covariance + move * mean_covariance * move.transpose();
-  return left.dot(covariance.ldlt().solve(left)) < kUnexplainedShare * std::pow(check_->shift_sigmas, 2);
 }
 
 bool DriftWatch::is_in_place() const {
   return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
 }
 
-bool DriftWatch::is_seen(double now_s) const {
-  return now_s - pinned_s_ < kEvidence_s || (check_ && check_->agrees && now_s - check_s_ < kCheck_s);
-}
+bool DriftWatch::is_seen() const { return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9); }
 
 void DriftWatch::judge(double now_s) {
   const bool in_front = now_s - in_front_s_ < kInFront_s;
@@ -284,7 +207,7 @@ void DriftWatch::judge(double now_s) {
     report_.verdict = DriftVerdict::sensor_moved;
   else if (model_wrong_)
     report_.verdict = DriftVerdict::robot_model_wrong;
-  else if (!is_seen(now_s))
+  else if (!is_seen())
     report_.verdict =
         in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
   else if (bias_changed_)

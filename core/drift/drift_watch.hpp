@@ -94,8 +94,10 @@ class DriftWatch {
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
   bool is_robots_shift_possible() const;
-  bool is_seen(double now_s) const;
+  bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
+
+  static constexpr double kEvidence_s = 1;  // what was seen so lately is of now
 
   DriftSettings settings_;
   CameraModel camera_;

@@ -95,7 +95,7 @@ std::string dropped_postures(const CollectTask& task) {
   const int dropped = task.dropped();
   if (dropped == 0) return {};
   return "; " + std::to_string(dropped) +
-         " more dropped when the sensor was lost, because it may have been moved";
+         " more dropped when the sensor was lost or had moved: views of before and after never come together";
 }
 
 }  // namespace calibrd

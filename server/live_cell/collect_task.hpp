@@ -22,7 +22,8 @@ class CollectTask {
 
   void offer(const View& view);
   void interrupt();
-  /// The sensor was lost: views of before and after it never come together. A complete task keeps its own.
+  /// The sensor was lost or has moved: views of before and after it never come together. A complete task
+  /// keeps its own.
   void start_over();
   void cancel();
   /// What has been seen is enough, if anything has: the task is complete.

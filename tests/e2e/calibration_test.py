@@ -24,13 +24,13 @@ class Calibration(CellTest):
     def test_the_pose_is_true_is_kept_over_a_restart_and_falls_when_the_sensor_is_knocked(self):
         simulator = self.simulate()
         simulator.hurry()
-        daemon = self.serve(simulator, "pose.max_unverified=8s").wait_ready()
+        daemon = self.serve(simulator, "pose.max_unverified=8s", "drift.healing=off").wait_ready()
         job = daemon.calibrate()
         self.assertEqual((job["status"], job["verdict"]), ("succeeded", "accepted"), job)
         self.expect_valid_and_true(daemon, simulator)
 
         daemon.stop()
-        daemon = self.serve(simulator, "pose.max_unverified=8s").wait_ready()
+        daemon = self.serve(simulator, "pose.max_unverified=8s", "drift.healing=off").wait_ready()
         self.expect_valid_and_true(daemon, simulator)
 
         simulator.tell("POST", f"/sensors/{SENSOR}/knock", shift_m=[0.02, 0.0, 0.01], turn_deg=[0.0, 2.0, 0.0])

@@ -49,6 +49,20 @@ TEST_F(DriftWatchTest, AKnockIsFoundAndSaysWhereTo) {
   EXPECT_LT(error.norm(), 0.015);
 }
 
+/// Whoever collects views after a knock starts over when the sensor is seen elsewhere again.
+TEST_F(DriftWatchTest, AKnockedSensorThatStandsIsSeenInOnePlace) {
+  watch_for(1);
+  moved_ << 0, 0.035, 0, 0.02, 0, 0.01;
+  ASSERT_EQ(watch_for(1), DriftVerdict::sensor_moved);
+  const Pose truth = perturbed(true_T_base_sensor(), moved_);
+  watch_for(8, [&] {
+    ASSERT_TRUE(watch_.report().T_base_sensor_seen);
+    const Vector6d error = difference(truth, *watch_.report().T_base_sensor_seen);
+    EXPECT_LT(error.head<3>().norm(), 0.002) << now_s_;
+    EXPECT_LT(error.tail<3>().norm(), 0.0025) << now_s_;
+  });
+}
+
 TEST_F(DriftWatchTest, ASlowKnockIsFoundToo) {
   watch_for(1);
   EXPECT_EQ(watch_for(2, [&] { moved_[3] += 0.004 / 60; }), DriftVerdict::sensor_moved);
