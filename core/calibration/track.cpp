@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/registration/depth_noise.hpp"
+#include "core/registration/frame_pixels.hpp"
 #include "core/registration/linearization.hpp"
 
 namespace calibrd {
@@ -22,9 +23,6 @@ using Information = Eigen::Matrix<double, kParametersHere, kParametersHere>;
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kMinKernel_m = 0.006;
 constexpr double kTypicalSigma_m = 1.6e-3;
-/// A measured step to a direct neighbour, as a share of the depth, beyond which a pixel mixes two surfaces;
-/// and how far a predicted neighbour may lie off the pixel's tangent plane before the pixel counts as rim.
-constexpr double kMixedStep = 0.025, kRimStep = 0.025;
 /// Pixels on a block of this side (pixels of the sensor) share a cluster: their errors correlate.
 constexpr int kBlockSide = 24;
 
@@ -38,19 +36,6 @@ CameraModel thinned(const CameraModel& camera, int stride) {
   sparse.cx = (camera.cx - first) / stride;
   sparse.cy = (camera.cy - first) / stride;
   return sparse;
-}
-
-/// The tangent plane of a predicted pixel runs on to its neighbours, or the pixel is the robot's edge.
-bool is_rim(const VirtualMeasurement& prediction, const std::vector<Eigen::Vector3d>& rays, int u, int v,
-            const Eigen::Vector3d& n, double plane) {
-  if (u < 1 || v < 1 || u + 1 >= prediction.width || v + 1 >= prediction.height) return true;
-  const auto row = static_cast<std::size_t>(prediction.width);
-  const std::size_t i = static_cast<std::size_t>(v) * row + static_cast<std::size_t>(u);
-  for (const std::size_t j : {i - 1, i + 1, i - row, i + row}) {
-    const double z = prediction.depth_m[j];
-    if (std::abs(n.dot(rays[j]) * z - plane) > kRimStep * std::abs(plane)) return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -109,19 +94,6 @@ Status PoseTracker::check(const View& view) const {
   return Done{};
 }
 
-/// What the sparse pixel measures; 0 when nothing, or two surfaces at once.
-double PoseTracker::measured_m(int column, int row, const DepthImage& depth) const {
-  const int x = settings_.stride * column + settings_.stride / 2,
-            y = settings_.stride * row + settings_.stride / 2;
-  if (x < 1 || y < 1 || x + 1 >= depth.width || y + 1 >= depth.height) return 0;
-  const double z = depth.depth_m(x, y);
-  const auto differs = [&](int nx, int ny) {
-    const double neighbour = depth.depth_m(nx, ny);
-    return neighbour <= 0 || std::abs(neighbour - z) >= kMixedStep * z;
-  };
-  return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1) ? 0 : z;
-}
-
 void PoseTracker::compare_row(int row, const View& view, const Pose& T_base_sensor,
                               const DepthCorrection& correction, const Weighing& weighing, Sums& sums) const {
   const Eigen::Matrix3d R = T_base_sensor.linear();
@@ -132,9 +104,9 @@ void PoseTracker::compare_row(int row, const View& view, const Pose& T_base_sens
     const Eigen::Vector3d d = rays_[i], n = prediction_.normal[i].cast<double>();
     const double slope = n.dot(d);  // below 0: normals face the sensor
     const double cos_incidence = -slope / d.norm();
-    if (cos_incidence < settings_.min_cos_incidence || is_rim(prediction_, rays_, column, row, n, slope * z))
-      continue;
-    const double measured = measured_m(column, row, view.depth);
+    if (cos_incidence < settings_.min_cos_incidence || is_rim(prediction_, rays_, column, row)) continue;
+    const double measured = measured_m(view.depth, settings_.stride * column + settings_.stride / 2,
+                                       settings_.stride * row + settings_.stride / 2);
     if (measured <= 0) continue;
     ++sums.measured;
     const double residual = measured - correction.measured(z), off = residual / weighing.kernel_m;

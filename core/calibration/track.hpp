@@ -61,7 +61,6 @@ class PoseTracker {
                const Weighing& weighing);
   void compare_row(int row, const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
                    const Weighing& weighing, Sums& sums) const;
-  double measured_m(int column, int row, const DepthImage& depth) const;
   bool step(const Sums& sums, double scatter, TrackedPose& tracked) const;
 
   TrackSettings settings_;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/registration/depth_noise.hpp"
+#include "core/registration/frame_pixels.hpp"
 #include "core/registration/linearization.hpp"
 #include "core/timing/link_motion.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 /// Over this much to both sides joint speed is taken: about a controller's cycle, so that it is not that of
 /// one interpolated piece.
 constexpr auto kSpeedReach = std::chrono::milliseconds(20);
-constexpr double kMixedStep = 0.025, kRimStep = 0.025;  // as PoseTracker has them
 /// Pixels on a block of this side (pixels of the sensor) share a cluster: their errors correlate.
 constexpr int kBlockSide = 24;
 constexpr double kMisfitReach_m = 0.03;
@@ -46,30 +46,6 @@ bool FrameMotion::place(const JointsAt& joints_at, Clock::time_point time) {
   return true;
 }
 
-/// What the sparse pixel measures; 0 when nothing, or two surfaces at once.
-double FrameMotion::measured_m(const DepthImage& depth, int column, int row) const {
-  const int x = settings_.stride * column, y = settings_.stride * row;
-  if (x < 1 || y < 1 || x + 1 >= depth.width || y + 1 >= depth.height) return 0;
-  const double z = depth.depth_m(x, y);
-  const auto differs = [&](int nx, int ny) {
-    const double neighbour = depth.depth_m(nx, ny);
-    return neighbour <= 0 || std::abs(neighbour - z) >= kMixedStep * z;
-  };
-  return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1) ? 0 : z;
-}
-
-/// The tangent plane of a predicted pixel runs on to its neighbours, or the pixel is the robot's edge.
-bool FrameMotion::is_rim(int column, int row, double slope_z) const {
-  if (column < 1 || row < 1 || column + 1 >= prediction_.width || row + 1 >= prediction_.height) return true;
-  const std::size_t i = prediction_.index(column, row), width = static_cast<std::size_t>(prediction_.width);
-  const Eigen::Vector3d n = prediction_.normal[i].cast<double>();
-  for (const std::size_t j : {i - 1, i + 1, i - width, i + width}) {
-    const double z = prediction_.depth_m[j];
-    if (std::abs(n.dot(rays_[j]) * z - slope_z) > kRimStep * std::abs(slope_z)) return true;
-  }
-  return false;
-}
-
 /// Predicts where the cell stands now, and lists the pixels that can be compared.
 void FrameMotion::compare(const TimedFrame& frame) {
   cell_.measure(sparse_camera_, frame.T_base_sensor, prediction_);
@@ -80,8 +56,9 @@ void FrameMotion::compare(const TimedFrame& frame) {
       const std::size_t i = prediction_.index(column, row);
       if (prediction_.link[i] < 0) continue;
       const double z = prediction_.depth_m[i], slope = prediction_.normal[i].cast<double>().dot(rays_[i]);
-      if (-slope / rays_[i].norm() < settings_.min_cos_incidence || is_rim(column, row, slope * z)) continue;
-      const double measured = measured_m(frame.depth, column, row);
+      if (-slope / rays_[i].norm() < settings_.min_cos_incidence || is_rim(prediction_, rays_, column, row))
+        continue;
+      const double measured = measured_m(frame.depth, settings_.stride * column, settings_.stride * row);
       if (measured <= 0) continue;
       pixels_.push_back({i, z, slope, measured - frame.correction.measured(z),
                          static_cast<std::size_t>(row * settings_.stride / kBlockSide) * clusters_per_row +

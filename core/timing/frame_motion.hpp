@@ -57,8 +57,6 @@ class FrameMotion {
   };
   bool place(const JointsAt& joints_at, Clock::time_point time);
   void compare(const TimedFrame& frame);
-  double measured_m(const DepthImage& depth, int column, int row) const;
-  bool is_rim(int column, int row, double slope_z) const;
 
   FrameMotionSettings settings_;
   CameraModel camera_, sparse_camera_;
