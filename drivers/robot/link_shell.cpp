@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "drivers/robot/dial.hpp"
 #include "drivers/robot/tcp_socket.hpp"
 
 namespace calibrd {
@@ -66,30 +67,12 @@ auto LinkShell::for_this_connection(Handler handler) {
 
 void LinkShell::carry_out(link_step::Connect) {
   ++connection_;
-  lookup_.start(
-      for_this_connection([this](const std::error_code& failed, const NameLookup::Endpoints& endpoints) {
-        if (failed) return obey(machine_.on_connect_failed(failed, Clock::now()));
-        try_endpoints(endpoints, 0);
-      }));
-}
-
-void LinkShell::try_endpoints(std::vector<Tcp::endpoint> endpoints, std::size_t index) {
-  const Tcp::endpoint endpoint = endpoints[index];
-  ErrorCode ignored;
-  socket_.close(ignored);
-  socket_.async_connect(
-      endpoint, for_this_connection([this, endpoints = std::move(endpoints), index](ErrorCode failed) {
-        if (!failed && connected_to_itself(socket_)) failed = asio::error::connection_refused;
-        if (!failed) return on_connected();
-        if (index + 1 < endpoints.size()) return try_endpoints(endpoints, index + 1);
-        obey(machine_.on_connect_failed(failed, Clock::now()));
-      }));
-}
-
-void LinkShell::on_connected() {
-  tune_state_socket(socket_);
-  wait_for_bytes();
-  obey(machine_.on_connected(Clock::now()));
+  const auto guard = [this](auto handler) { return for_this_connection(std::move(handler)); };
+  dial(lookup_, socket_, guard, [this](const std::error_code& failed) {
+    if (failed) return obey(machine_.on_connect_failed(failed, Clock::now()));
+    wait_for_bytes();
+    obey(machine_.on_connected(Clock::now()));
+  });
 }
 
 void LinkShell::carry_out(link_step::Close) {

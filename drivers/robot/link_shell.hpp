@@ -47,8 +47,6 @@ class LinkShell : public std::enable_shared_from_this<LinkShell> {
 
   template <class Handler>
   auto for_this_connection(Handler handler);
-  void try_endpoints(std::vector<Tcp::endpoint> endpoints, std::size_t index);
-  void on_connected();
   void wait_for_bytes();
   void read_what_is_there();
   bool read_once();

@@ -7,6 +7,7 @@
 #include <boost/asio/write.hpp>
 #include <utility>
 
+#include "drivers/robot/dial.hpp"
 #include "drivers/robot/tcp_socket.hpp"
 
 namespace calibrd {
@@ -100,26 +101,12 @@ auto MotionClient::for_this_connection(Handler handler) {
 void MotionClient::carry_out(motion_step::Connect) {
   tell("opening the motion port " + settings_.host + ":" + std::to_string(settings_.port));
   ++connection_;
-  lookup_.start(
-      for_this_connection([this](const std::error_code& failed, const NameLookup::Endpoints& endpoints) {
-        if (failed) return obey(machine_->on_connect_failed(failed, Clock::now()));
-        try_endpoints(endpoints, 0);
-      }));
-}
-
-void MotionClient::try_endpoints(std::vector<Tcp::endpoint> endpoints, std::size_t index) {
-  const Tcp::endpoint endpoint = endpoints[index];
-  ErrorCode ignored;
-  socket_.close(ignored);
-  socket_.async_connect(
-      endpoint, for_this_connection([this, endpoints = std::move(endpoints), index](ErrorCode failed) {
-        if (!failed && connected_to_itself(socket_)) failed = asio::error::connection_refused;
-        if (failed && index + 1 < endpoints.size()) return try_endpoints(endpoints, index + 1);
-        if (failed) return obey(machine_->on_connect_failed(failed, Clock::now()));
-        tune_state_socket(socket_);
-        wait_for_bytes();
-        obey(machine_->on_connected(Clock::now()));
-      }));
+  const auto guard = [this](auto handler) { return for_this_connection(std::move(handler)); };
+  dial(lookup_, socket_, guard, [this](const std::error_code& failed) {
+    if (failed) return obey(machine_->on_connect_failed(failed, Clock::now()));
+    wait_for_bytes();
+    obey(machine_->on_connected(Clock::now()));
+  });
 }
 
 void MotionClient::wait_for_bytes() {

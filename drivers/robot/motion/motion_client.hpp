@@ -68,7 +68,6 @@ class MotionClient : public RobotMover, public std::enable_shared_from_this<Moti
 
   template <class Handler>
   auto for_this_connection(Handler handler);
-  void try_endpoints(std::vector<Tcp::endpoint> endpoints, std::size_t index);
   void wait_for_bytes();
   void read_what_is_there();
   void write_next();
