@@ -11,6 +11,8 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 
+#include "drivers/sim/controller/listen_on_loopback.hpp"
+
 namespace calibrd::sim {
 
 namespace asio = boost::asio;
@@ -66,16 +68,9 @@ asio::awaitable<void> accept_all(tcp::acceptor& acceptor, ControlRoutes& routes)
 }  // namespace
 
 Status ControlServer::listen(std::uint16_t port) {
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
-  boost::system::error_code failed;
-  acceptor_.open(endpoint.protocol(), failed);
-  if (!failed) acceptor_.set_option(asio::socket_base::reuse_address(true), failed);
-  if (!failed) acceptor_.bind(endpoint, failed);
-  if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
-  if (failed)
-    return sim_error(SimError::cannot_listen,
-                     "control port " + std::to_string(port) + " (" + failed.message() + ")");
-  port_ = acceptor_.local_endpoint().port();
+  const auto listening = listen_on_loopback(acceptor_, "control port", port);
+  if (!listening) return listening.error();
+  port_ = *listening;
   asio::co_spawn(acceptor_.get_executor(), accept_all(acceptor_, routes_), asio::detached);
   return Done{};
 }

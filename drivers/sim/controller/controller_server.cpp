@@ -7,7 +7,7 @@
 #include <boost/asio/write.hpp>
 #include <chrono>
 
-#include "drivers/sim/world/sim_error.hpp"
+#include "drivers/sim/controller/listen_on_loopback.hpp"
 
 namespace calibrd::sim {
 
@@ -40,19 +40,9 @@ Status ControllerServer::listen(std::uint16_t port) {
 }
 
 Status ControllerServer::open_port() {
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port_);
-  boost::system::error_code failed;
-  acceptor_.open(endpoint.protocol(), failed);
-  if (!failed) acceptor_.set_option(asio::socket_base::reuse_address(true), failed);
-  if (!failed) acceptor_.bind(endpoint, failed);
-  if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
-  if (failed) {
-    boost::system::error_code ignored;
-    acceptor_.close(ignored);
-    return sim_error(SimError::cannot_listen,
-                     "controller port " + std::to_string(port_) + " (" + failed.message() + ")");
-  }
-  port_ = acceptor_.local_endpoint().port();
+  const auto listening = listen_on_loopback(acceptor_, "controller port", port_);
+  if (!listening) return listening.error();
+  port_ = *listening;
   started_ns_ = monotonic_ns();
   accept_next();
   return Done{};

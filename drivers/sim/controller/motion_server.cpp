@@ -6,7 +6,7 @@
 #include <boost/asio/write.hpp>
 #include <exception>
 
-#include "drivers/sim/world/sim_error.hpp"
+#include "drivers/sim/controller/listen_on_loopback.hpp"
 
 namespace calibrd::sim {
 
@@ -25,16 +25,9 @@ MotionServer::MotionServer(asio::io_context& io, WorldAccess world, ControllerSe
     : world_(std::move(world)), controller_(controller), acceptor_(io) {}
 
 Status MotionServer::listen(std::uint16_t port) {
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
-  boost::system::error_code failed;
-  acceptor_.open(endpoint.protocol(), failed);
-  if (!failed) acceptor_.set_option(asio::socket_base::reuse_address(true), failed);
-  if (!failed) acceptor_.bind(endpoint, failed);
-  if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
-  if (failed)
-    return sim_error(SimError::cannot_listen,
-                     "motion port " + std::to_string(port) + " (" + failed.message() + ")");
-  port_ = acceptor_.local_endpoint().port();
+  const auto listening = listen_on_loopback(acceptor_, "motion port", port);
+  if (!listening) return listening.error();
+  port_ = *listening;
   accept_next();
   return Done{};
 }
