@@ -16,14 +16,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build=build/${CALIBRD_PRESET:-release}
-bench=$build/bin/calibrd-bench
+# shellcheck source=scripts/lib/bench_robots.sh
+. scripts/lib/bench_robots.sh
 first=300001 scenes=45 what=events hours=1 kept='' short=''
-
-die() {
-  echo "watch.sh: $*" >&2
-  exit 2
-}
 
 while [ $# -gt 0 ]; do
   case $1 in
@@ -45,18 +40,7 @@ if [ -n "$short" ]; then
 fi
 scenes=${given:-$scenes}
 
-[ -x "$bench" ] || die "$bench is missing; run scripts/test.sh first"
-robots=()
-for name in demo_arm7 test_arm6; do
-  for urdf in "$build"/{share/calibrd,tests}/robots/$name/urdf/$name.urdf; do
-    [ -f "$urdf" ] && robots+=(--robot "$urdf")
-  done
-done
-[ ${#robots[@]} -gt 0 ] || die "no robot in $build; run scripts/test.sh first"
-models=${CALIBRD_SHARED_DATA:+$CALIBRD_SHARED_DATA/models}
-sia5d=$models/motoman_sia5d_support/urdf/sia5d.urdf
-if [ -n "$models" ] && [ -f "$sia5d" ]; then robots+=(--robot "$sia5d" --models "$models"); fi
-
+find_robots
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 lines=$scratch/lines.jsonl
