@@ -40,6 +40,9 @@ const char* name_of(Verdict verdict);
 /// As JSON has it: what is not a number is null.
 std::string shown(double value, int decimals);
 
+/// Says on stderr why the program ends. Returns its status, 2.
+int stop(const std::string& message);
+
 struct FineOptions {
   std::filesystem::path capture_dir;
   Paths models;
@@ -99,11 +102,16 @@ struct StepOptions {
 };
 int run_step(const StepOptions& options);
 
-struct MovingBenchOptions {
-  Paths urdfs;  ///< the scenes take them in turn
+/// Simulated scenes, one a seed.
+struct RandomScenes {
+  Paths urdfs;  ///< the scenes take the robots in turn
   Paths models;
+  std::uint64_t first_seed = 1;
+};
+
+struct MovingBenchOptions : RandomScenes {
   std::string level = "cell";
-  std::uint64_t first_seed = 1, scenes = 10;
+  std::uint64_t scenes = 10;
   std::size_t postures = 10;
   double speed_m_s = 0.25;
   double offset_ms = 30, jitter_ms = 1;
@@ -112,11 +120,9 @@ struct MovingBenchOptions {
 };
 int run_moving(const MovingBenchOptions& options);
 
-struct ScenesOptions {
-  Paths urdfs;  ///< the scenes take them in turn
-  Paths models;
+struct ScenesOptions : RandomScenes {
   std::string level = "mixed";  ///< clean, cell, field, or all of them in turn
-  std::uint64_t first_seed = 1, scenes = 10;
+  std::uint64_t scenes = 10;
   std::vector<std::size_t> postures{10};      ///< simulated once, with the most; fewer: its first views
   std::optional<double> guess_mm, guess_deg;  ///< neither: calibrate without a guess
   bool depth_only = false;
@@ -126,16 +132,14 @@ struct ScenesOptions {
 };
 int run_scenes(ScenesOptions options);
 
-struct WatchOptions {
-  Paths urdfs, models;  ///< the scenes take the robots in turn
-  std::uint64_t first_seed = 1, scenes = 3;
+struct WatchOptions : RandomScenes {
+  std::uint64_t scenes = 3;
   std::string event;  ///< the verdict that is right for it; empty: one of each kind in every scene
 };
 int run_watch(const WatchOptions& options);
 
-struct WatchHoursOptions {
-  Paths urdfs, models;
-  std::uint64_t first_seed = 1, cells = 6;
+struct WatchHoursOptions : RandomScenes {
+  std::uint64_t cells = 6;
   double hours = 1;                                 ///< of all cells together
   std::filesystem::path innovations = "/dev/null";  ///< to write them to
 };
@@ -148,16 +152,15 @@ struct WatchTailOptions {
 };
 int run_watch_tail(const WatchTailOptions& options);
 
-struct WatchCreepOptions {
-  Paths urdfs, models;
-  std::uint64_t first_seed = 1, cells = 8;
+struct WatchCreepOptions : RandomScenes {
+  std::uint64_t cells = 8;
   double per_hour_mm = 1;  ///< or mrad
   double seen_s = 1;       ///< of every minute
 };
 int run_watch_creep(const WatchCreepOptions& options);
-struct PairsOptions {
-  Paths urdfs, models;  ///< the scenes take the robots in turn
-  std::uint64_t first_seed = 1, scenes = 20;
+
+struct PairsOptions : RandomScenes {
+  std::uint64_t scenes = 20;
   std::size_t postures = 6;
 };
 int run_pairs(const PairsOptions& options);

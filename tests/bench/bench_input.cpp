@@ -35,10 +35,7 @@ std::vector<std::pair<Point, Point>> read_check_points(const std::filesystem::pa
   return points;
 }
 
-[[noreturn]] void stop(const Error& error) {
-  std::fprintf(stderr, "calibrd-bench: %s\n", error.message().c_str());
-  std::exit(2);
-}
+[[noreturn]] void end(const Error& error) { std::exit(stop(error.message())); }
 
 Eigen::Vector3d random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -49,18 +46,23 @@ Eigen::Vector3d random_direction(std::mt19937_64& random) {
 
 Input load(const std::filesystem::path& capture_dir, const Paths& models) {
   auto capture = read_capture(capture_dir, models);
-  if (!capture) stop(capture.error());
+  if (!capture) end(capture.error());
   RobotModelOptions options{models, capture->base_link};
   options.search_paths.insert(options.search_paths.begin(), capture_dir);
   auto robot = RobotModel::load(capture->urdf, options);
-  if (!robot) stop(robot.error());
+  if (!robot) end(robot.error());
   const CameraModel camera = capture->camera;
   auto views = views_in_model_order(*robot, std::move(*capture));
-  if (!views) stop(views.error());
+  if (!views) end(views.error());
   Input input{std::move(*robot), camera, std::move(*views), read_check_points(capture_dir / "truth.json"),
               std::nullopt};
   if (auto truth = read_pose((capture_dir / "truth.json").string())) input.truth_T_base_sensor = *truth;
   return input;
+}
+
+int stop(const std::string& message) {
+  std::fprintf(stderr, "calibrd-bench: %s\n", message.c_str());
+  return 2;
 }
 
 Pose off_by(const Pose& T_base_sensor, double offset_m, double angle_rad, std::mt19937_64& random) {

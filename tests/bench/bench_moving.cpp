@@ -116,19 +116,12 @@ json::object run_one(std::uint64_t seed, const SceneRobot& robot, const MovingBe
 
 int run_moving(const MovingBenchOptions& options) {
   const auto tables = std::make_shared<const sim::SensorTables>(sim::CameraParameters{});
-  std::vector<SceneRobot> robots;
-  for (const auto& urdf : options.urdfs) {
-    auto robot = read_scene_robot(urdf, options.models);
-    if (!robot) {
-      std::fprintf(stderr, "calibrd-bench: %s\n", robot.error().message().c_str());
-      return 2;
-    }
-    robots.push_back(std::move(*robot));
-  }
+  const auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
   for (std::uint64_t i = 0; i < options.scenes; ++i) {
     const std::uint64_t seed = options.first_seed + i;
     std::printf("%s\n",
-                json::serialize(run_one(seed, robots[seed % robots.size()], options, tables)).c_str());
+                json::serialize(run_one(seed, (*robots)[seed % robots->size()], options, tables)).c_str());
     std::fflush(stdout);
   }
   return 0;

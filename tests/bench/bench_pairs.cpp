@@ -153,22 +153,15 @@ void print_totals(const Totals& totals) {
 }  // namespace
 
 int run_pairs(const PairsOptions& options) {
-  std::vector<SceneRobot> robots;
-  for (const auto& urdf : options.urdfs) {
-    auto robot = read_scene_robot(urdf, options.models);
-    if (!robot) {
-      std::fprintf(stderr, "calibrd-bench: %s\n", robot.error().message().c_str());
-      return 2;
-    }
-    robots.push_back(*std::move(robot));
-  }
+  const auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
   sim::CaptureOptions capture;
   capture.postures = options.postures;
   const auto tables = std::make_shared<const sim::SensorTables>(sim::SensorState{}.camera);
   Totals totals;
   for (std::uint64_t i = 0; i < options.scenes; ++i) {
     const std::uint64_t seed = options.first_seed + i;
-    auto scene = simulate_scene(robots[i % robots.size()], seed, capture, tables);
+    auto scene = simulate_scene((*robots)[i % robots->size()], seed, capture, tables);
     if (!scene) continue;
     Calibrated first{scene->truth.T_base_sensor, scene->views, {}, nullptr};
     Calibrated second = second_of(*scene, tables, seed);

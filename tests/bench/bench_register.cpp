@@ -27,18 +27,13 @@ void print(const CloudRegistration& result, const std::vector<double>& milliseco
   std::printf("]}\n");
 }
 
-int stop(const Error& error) {
-  std::fprintf(stderr, "calibrd-bench: %s\n", error.message().c_str());
-  return 2;
-}
-
 }  // namespace
 
 int run_register(const RegisterOptions& options) {
   const auto source = read_ply(options.source);
-  if (!source) return stop(source.error());
+  if (!source) return stop(source.error().message());
   const auto target = read_ply(options.target);
-  if (!target) return stop(target.error());
+  if (!target) return stop(target.error().message());
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(options.threads));
   std::vector<double> milliseconds;
@@ -47,7 +42,7 @@ int run_register(const RegisterOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     const auto result = register_clouds(*source, *target, {});
     const auto end = std::chrono::steady_clock::now();
-    if (!result) return stop(result.error());
+    if (!result) return stop(result.error().message());
     milliseconds.push_back(std::chrono::duration<double, std::milli>(end - begin).count());
     last = *result;
   }

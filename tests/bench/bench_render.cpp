@@ -26,10 +26,7 @@ Pose looking_at_arm(double distance_m) {
 
 int run_render(const RenderOptions& options) {
   auto robot = RobotModel::load(options.urdf, {options.models, ""});
-  if (!robot) {
-    std::fprintf(stderr, "calibrd-bench: %s\n", robot.error().message().c_str());
-    return 2;
-  }
+  if (!robot) return stop(robot.error().message());
   const CameraModel kinect2{512, 424, 365.456, 365.456, 254.878, 205.395, {0.0905, -0.268, 0, 0, 0.0951}};
   VirtualCell cell(*robot);
   VirtualMeasurement image;

@@ -175,21 +175,14 @@ int run_scenes(ScenesOptions options) {
   std::ranges::sort(options.postures, std::greater());
   const auto repeated = std::ranges::unique(options.postures);
   options.postures.erase(repeated.begin(), repeated.end());
-  std::vector<SceneRobot> robots;
-  for (const auto& urdf : options.urdfs) {
-    auto robot = read_scene_robot(urdf, options.models);
-    if (!robot) {
-      std::fprintf(stderr, "calibrd-bench: %s\n", robot.error().message().c_str());
-      return 2;
-    }
-    robots.push_back(std::move(*robot));
-  }
+  const auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
   const auto tables = std::make_shared<const sim::SensorTables>(sim::CameraParameters{});
   std::atomic<std::uint64_t> next = 0;
   OrderedOutput output;
   const auto work = [&] {
     for (std::uint64_t i = next++; i < options.scenes; i = next++)
-      output.put(i, run_scene(options.first_seed + i, robots, options, tables));
+      output.put(i, run_scene(options.first_seed + i, *robots, options, tables));
   };
   std::vector<std::jthread> workers;
   for (unsigned job = 1; job < options.jobs; ++job) workers.emplace_back(work);

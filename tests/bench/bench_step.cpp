@@ -23,11 +23,6 @@ double milliseconds_since(Clock::time_point time) {
   return std::chrono::duration<double, std::milli>(Clock::now() - time).count();
 }
 
-int stop(const std::string& message) {
-  std::fprintf(stderr, "calibrd-bench: %s\n", message.c_str());
-  return 2;
-}
-
 }  // namespace
 
 int run_step(const StepOptions& options) {

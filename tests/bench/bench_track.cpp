@@ -38,11 +38,6 @@ struct Tally {
   }
 };
 
-int stop(const std::string& message) {
-  std::fprintf(stderr, "calibrd-bench: %s\n", message.c_str());
-  return 2;
-}
-
 }  // namespace
 
 int run_track(const TrackOptions& options) {

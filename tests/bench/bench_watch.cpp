@@ -90,15 +90,16 @@ json::object run_event(const CalibratedScenes::One& one,
 }  // namespace
 
 int run_watch(const WatchOptions& options) {
-  const auto scenes = CalibratedScenes::read(options.urdfs, options.models);
-  if (!scenes) return 2;
+  auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
+  const CalibratedScenes scenes(*std::move(robots));
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1);
   for (std::uint64_t seed = options.first_seed; seed < options.first_seed + options.scenes; ++seed) {
-    const auto one = scenes->get(seed);
+    const auto one = scenes.get(seed);
     if (!one) continue;
     for (const Event event : kEvents) {
       if (!options.event.empty() && options.event != right_verdict(event)) continue;
-      const auto line = run_event(*one, scenes->tables(), event, seed);
+      const auto line = run_event(*one, scenes.tables(), event, seed);
       if (line.empty()) continue;
       std::printf("%s\n", json::serialize(line).c_str());
       std::fflush(stdout);

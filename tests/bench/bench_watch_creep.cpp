@@ -75,15 +75,16 @@ json::object creep(const CalibratedScenes::One& one, const std::shared_ptr<const
 }  // namespace
 
 int run_watch_creep(const WatchCreepOptions& options) {
-  const auto scenes = CalibratedScenes::read(options.urdfs, options.models);
-  if (!scenes) return 2;
+  auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
+  const CalibratedScenes scenes(*std::move(robots));
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1);
   std::uint64_t cells = 0;
   for (std::uint64_t seed = options.first_seed; cells < options.cells; ++seed) {
-    const auto one = scenes->get(seed);
+    const auto one = scenes.get(seed);
     if (!one) continue;
     ++cells;
-    std::printf("%s\n", json::serialize(creep(*one, scenes->tables(), seed, options)).c_str());
+    std::printf("%s\n", json::serialize(creep(*one, scenes.tables(), seed, options)).c_str());
     std::fflush(stdout);
   }
   return 0;

@@ -131,21 +131,19 @@ json::object watch_cell(const CalibratedScenes::One& one,
 }  // namespace
 
 int run_watch_hours(const WatchHoursOptions& options) {
-  const auto scenes = CalibratedScenes::read(options.urdfs, options.models);
-  if (!scenes) return 2;
+  auto robots = read_scene_robots(options);
+  if (!robots) return stop(robots.error().message());
+  const CalibratedScenes scenes(*std::move(robots));
   InnovationWriter innovations(options.innovations);
-  if (!innovations.is_open()) {
-    std::fprintf(stderr, "calibrd-bench: cannot write %s\n", options.innovations.string().c_str());
-    return 2;
-  }
+  if (!innovations.is_open()) return stop("cannot write " + options.innovations.string());
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1);
   std::uint64_t cells = 0;
   for (std::uint64_t seed = options.first_seed; cells < options.cells; ++seed) {
-    const auto one = scenes->get(seed, true);
+    const auto one = scenes.get(seed, true);
     if (!one) continue;
     ++cells;
     const double seconds = 3600 * options.hours / static_cast<double>(options.cells);
-    const auto line = watch_cell(*one, scenes->tables(), seed, seconds, innovations);
+    const auto line = watch_cell(*one, scenes.tables(), seed, seconds, innovations);
     std::printf("%s\n", json::serialize(line).c_str());
     std::fflush(stdout);
   }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -47,14 +46,18 @@ CLI::App* add_render(CLI::App& app, RenderOptions& render) {
   return command;
 }
 
+void add_random_scenes(CLI::App& command, RandomScenes& scenes) {
+  command.add_option("--robot", scenes.urdfs, "URDF; may be repeated, the scenes take them in turn")
+      ->required();
+  command.add_option("--models", scenes.models, "folders to look robot models up in");
+  command.add_option("--first-seed", scenes.first_seed);
+}
+
 CLI::App* add_scenes(CLI::App& app, ScenesOptions& scenes) {
   CLI::App* command =
       app.add_subcommand("scenes", "calibrate random simulated scenes and hold the truth against it");
-  command->add_option("--robot", scenes.urdfs, "URDF; may be repeated, the scenes take them in turn")
-      ->required();
-  command->add_option("--models", scenes.models, "folders to look robot models up in");
+  add_random_scenes(*command, scenes);
   command->add_option("--level", scenes.level)->check(CLI::IsMember({"clean", "cell", "field", "mixed"}));
-  command->add_option("--first-seed", scenes.first_seed);
   command->add_option("--scenes", scenes.scenes)->check(CLI::Range(1, 1000000));
   command->add_option("--postures", scenes.postures, "K[,K...]: how many views to calibrate from")
       ->delimiter(',')
@@ -83,11 +86,8 @@ CLI::App* add_step(CLI::App& app, StepOptions& step) {
 CLI::App* add_moving(CLI::App& app, MovingBenchOptions& moving) {
   CLI::App* command =
       app.add_subcommand("moving", "calibrate from views of a moving robot, and of the same postures still");
-  command->add_option("--robot", moving.urdfs, "URDF; may be repeated, the scenes take them in turn")
-      ->required();
-  command->add_option("--models", moving.models, "folders to look robot models up in");
+  add_random_scenes(*command, moving);
   command->add_option("--level", moving.level)->check(CLI::IsMember({"clean", "cell", "field"}));
-  command->add_option("--first-seed", moving.first_seed);
   command->add_option("--scenes", moving.scenes)->check(CLI::Range(1, 1000000));
   command->add_option("--postures", moving.postures)->check(CLI::Range(2, 1000));
   command->add_option("--speed-m-s", moving.speed_m_s, "of the robot's fastest point")
@@ -128,10 +128,7 @@ CLI::App* add_track(CLI::App& app, TrackOptions& track) {
 CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
   CLI::App* command =
       app.add_subcommand("watch", "stage events before watched sensors and tell the verdicts");
-  command->add_option("--robot", watch.urdfs, "URDF; may be repeated, the scenes take them in turn")
-      ->required();
-  command->add_option("--models", watch.models, "folders to look robot models up in");
-  command->add_option("--first-seed", watch.first_seed);
+  add_random_scenes(*command, watch);
   command->add_option("--scenes", watch.scenes, "seeds; not each has a scene that can be watched")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--event", watch.event, "only of this kind: the verdict that is right for it");
@@ -140,10 +137,7 @@ CLI::App* add_watch(CLI::App& app, WatchOptions& watch) {
 
 CLI::App* add_watch_hours(CLI::App& app, WatchHoursOptions& hours) {
   CLI::App* command = app.add_subcommand("watch-hours", "watch sensors that stand in cells at work");
-  command->add_option("--robot", hours.urdfs, "URDF; may be repeated, the cells take them in turn")
-      ->required();
-  command->add_option("--models", hours.models, "folders to look robot models up in");
-  command->add_option("--first-seed", hours.first_seed);
+  add_random_scenes(*command, hours);
   command->add_option("--cells", hours.cells)->check(CLI::Range(1, 100000));
   command->add_option("--hours", hours.hours, "of all cells together")->check(CLI::Range(0.0, 1e5));
   command->add_option("--innovations", hours.innovations, "file to write them to, for watch-tail");
@@ -161,10 +155,7 @@ CLI::App* add_watch_tail(CLI::App& app, WatchTailOptions& tail) {
 
 CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
   CLI::App* command = app.add_subcommand("watch-creep", "watch sensors that creep while they warm up");
-  command->add_option("--robot", creep.urdfs, "URDF; may be repeated, the cells take them in turn")
-      ->required();
-  command->add_option("--models", creep.models, "folders to look robot models up in");
-  command->add_option("--first-seed", creep.first_seed);
+  add_random_scenes(*command, creep);
   command->add_option("--cells", creep.cells)->check(CLI::Range(1, 100000));
   command->add_option("--per-hour-mm", creep.per_hour_mm, "or mrad")->check(CLI::Range(0.01, 1e3));
   command->add_option("--seen-s", creep.seen_s, "of every minute")->check(CLI::Range(0.1, 60.0));
@@ -174,10 +165,7 @@ CLI::App* add_watch_creep(CLI::App& app, WatchCreepOptions& creep) {
 CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
   CLI::App* command =
       app.add_subcommand("pairs", "calibrate two sensors of random scenes, check them against each other");
-  command->add_option("--robot", pairs.urdfs, "URDF; may be repeated, the scenes take them in turn")
-      ->required();
-  command->add_option("--models", pairs.models, "folders to look robot models up in");
-  command->add_option("--first-seed", pairs.first_seed);
+  add_random_scenes(*command, pairs);
   command->add_option("--scenes", pairs.scenes)->check(CLI::Range(1, 1000000));
   command->add_option("--postures", pairs.postures)->check(CLI::Range(2, 1000));
   return command;
@@ -185,8 +173,7 @@ CLI::App* add_pairs(CLI::App& app, PairsOptions& pairs) {
 
 int run_checked_scenes(const ScenesOptions& scenes) {
   if (!scenes.bound || (scenes.noise_only && scenes.depth_only)) return run_scenes(scenes);
-  std::cerr << "calibrd-bench: --bound holds for noise alone: give --noise-only and --depth-only too\n";
-  return 2;
+  return stop("--bound holds for noise alone: give --noise-only and --depth-only too");
 }
 
 struct Command {

@@ -72,6 +72,16 @@ Result<SceneRobot> read_scene_robot(const std::filesystem::path& urdf, const Pat
   return SceneRobot{model->name(), std::move(*simulated), std::move(*model)};
 }
 
+Result<std::vector<SceneRobot>> read_scene_robots(const RandomScenes& scenes) {
+  std::vector<SceneRobot> robots;
+  for (const auto& urdf : scenes.urdfs) {
+    auto robot = read_scene_robot(urdf, scenes.models);
+    if (!robot) return robot.error();
+    robots.push_back(*std::move(robot));
+  }
+  return robots;
+}
+
 std::vector<double> Scene::true_joints_rad(std::size_t view) const {
   std::vector<double> joints = views[view].joint_positions_rad;
   for (std::size_t j = 0; j < joints.size(); ++j) joints[j] += joint_zeros_rad[j];

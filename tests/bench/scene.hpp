@@ -25,6 +25,7 @@ struct SceneRobot {
 
 /// Errors: as read_robot() and RobotModel::load().
 Result<SceneRobot> read_scene_robot(const std::filesystem::path& urdf, const Paths& models);
+Result<std::vector<SceneRobot>> read_scene_robots(const RandomScenes& scenes);
 
 /// What an estimator has in the field, and apart from it the truth that it is judged by.
 struct Scene {

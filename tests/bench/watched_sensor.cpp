@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
+#include <utility>
 
 namespace calibrd::bench {
 namespace {
@@ -53,19 +53,9 @@ DriftVerdict WatchedSensor::see(const RunningCell::Frame& frame) {
   return watch_.report().verdict;
 }
 
-std::unique_ptr<CalibratedScenes> CalibratedScenes::read(const Paths& urdfs, const Paths& models) {
-  auto scenes = std::make_unique<CalibratedScenes>();
-  for (const auto& urdf : urdfs) {
-    auto robot = read_scene_robot(urdf, models);
-    if (!robot) {
-      std::fprintf(stderr, "calibrd-bench: %s\n", robot.error().message().c_str());
-      return nullptr;
-    }
-    scenes->robots_.push_back(*std::move(robot));
-  }
-  scenes->tables_ = std::make_shared<const sim::SensorTables>(sim::CameraParameters{});
-  return scenes;
-}
+CalibratedScenes::CalibratedScenes(std::vector<SceneRobot> robots)
+    : robots_(std::move(robots)),
+      tables_(std::make_shared<const sim::SensorTables>(sim::CameraParameters{})) {}
 
 std::unique_ptr<CalibratedScenes::One> CalibratedScenes::get(std::uint64_t seed,
                                                              bool without_other_robot) const {

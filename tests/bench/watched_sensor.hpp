@@ -44,8 +44,8 @@ class WatchedSensor {
 /// begin with.
 class CalibratedScenes {
  public:
-  /// Empty on errors, which are printed.
-  static std::unique_ptr<CalibratedScenes> read(const Paths& urdfs, const Paths& models);
+  /// Must outlive what get() returns.
+  explicit CalibratedScenes(std::vector<SceneRobot> robots);
 
   struct One {
     Scene scene;
