@@ -8,6 +8,7 @@
 #include "core/registration/depth_noise.hpp"
 #include "core/registration/frame_pixels.hpp"
 #include "core/registration/linearization.hpp"
+#include "core/registration/normal_equations.hpp"
 #include "core/timing/link_motion.hpp"
 
 namespace calibrd {
@@ -23,11 +24,6 @@ constexpr double kMinKernel_m = 0.006, kKernelSigmas = 4.7, kTypicalSigma_m = 1.
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-}
-
-double tukey(double residual, double kernel) {
-  const double off = residual / kernel;
-  return std::abs(off) >= 1 ? 0 : (1 - off * off) * (1 - off * off);
 }
 
 }  // namespace
@@ -99,7 +95,7 @@ std::optional<OffsetEquations> FrameMotion::observe(const TimedFrame& frame, con
       static_cast<std::size_t>((camera_.width / kBlockSide + 1) * (camera_.height / kBlockSide + 1)));
   const Eigen::Matrix3d R = frame.T_base_sensor.linear();
   for (const Pixel& pixel : pixels_) {
-    const double weight = tukey(pixel.residual, kernel);
+    const double weight = tukey_weight(pixel.residual, kernel);
     if (weight <= 0) continue;
     const Eigen::Vector3d ray = rays_[pixel.index];
     const Eigen::Vector3d n_base = R * prediction_.normal[pixel.index].cast<double>();
