@@ -67,7 +67,7 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
 void DriftWatch::absorb(double now_s) {
   if (now_s - absorbed_s_ < kAbsorbEvery_s) return;
   absorbed_s_ = now_s;
-  if (moved_ || is_doubtful() || !is_seen()) return;
+  if (moved_ || is_doubtful() || !is_known_to_stand()) return;
   take(scene_.unchanged_for(settings_.absorb_s));
 }
 

@@ -18,6 +18,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 /// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
 /// the background is still where it was: a fit to less settles anywhere.
 constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
+constexpr double kRobotHolds_s = 10;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -194,7 +195,16 @@ bool DriftWatch::is_in_place() const {
   return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
 }
 
-bool DriftWatch::is_seen() const { return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9); }
+/// Something has said just now that the sensor stands, in every direction.
+bool DriftWatch::is_known_to_stand() const {
+  return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9);
+}
+
+/// A wall leaves directions open: of these the robot's word holds longer, while it works and the wall stands.
+bool DriftWatch::is_seen() const {
+  const bool told = check_ && check_->agrees && frame_s_ - check_s_ < kRobotHolds_s;
+  return is_known_to_stand() || (told && frame_s_ - evidence_s_ < kEvidence_s);
+}
 
 void DriftWatch::judge(double now_s) {
   const bool in_front = now_s - in_front_s_ < kInFront_s;

@@ -82,6 +82,7 @@ class DriftWatch {
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
   bool is_robots_shift_possible() const;
+  bool is_known_to_stand() const;
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
