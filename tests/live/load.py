@@ -9,6 +9,7 @@ beforehand: the sensors replay one second, and the robot goes to and fro in one 
 
 usage: load.py [SECONDS [SENSORS...]]     default: 20 s each of 1 2 4 8 sensors"""
 
+import collections
 import json
 import os
 import sys
@@ -113,19 +114,28 @@ def sensor_reports(daemon: Daemon, sensors: list[str]) -> list[dict]:
     return [daemon.json(f"/api/v1/sensors/{sensor}") for sensor in sensors]
 
 
+def refused(earlier: list[dict], later: list[dict]) -> dict[str, int]:
+    """Why frames gave no view meanwhile; the drift watch looks at those of a moving robot as well."""
+    counts: collections.Counter = collections.Counter()
+    for report, sign in [*((r, 1) for r in later), *((r, -1) for r in earlier)]:
+        for code, count in report["views"]["frames_refused"].items():
+            counts[code] += sign * count
+    return {code: count for code, count in counts.items() if count}
+
+
 def measure(simulator: Simulator, daemon: Daemon, sensors: list[str], motion: str, seconds: float) -> dict:
     replay(simulator, sensors)
     family = Family(daemon, simulator)
-    frames, before, begin = [r["frames"] for r in sensor_reports(daemon, sensors)], family.cpu_s(), time.monotonic()
+    earlier, before, begin = sensor_reports(daemon, sensors), family.cpu_s(), time.monotonic()
     time.sleep(seconds)
     after, passed, reports = family.cpu_s(), time.monotonic() - begin, sensor_reports(daemon, sensors)
-    rates = [(report["frames"] - f) / passed for report, f in zip(reports, frames)]
+    rates = [(new["frames"] - old["frames"]) / passed for new, old in zip(reports, earlier)]
     cores = {f"{name}_cores": round((after[name] - before[name]) / passed, 3) for name in after}
     counted = cores["daemon_cores"] + cores["sensor_processes_cores"]
     line = {"sensors": len(sensors), "robot": motion, "least_frames_per_s": round(min(rates), 1), **cores,
             "cores_per_sensor": round(counted / len(sensors), 3), **family.memory_mb(),
             "verdicts": sorted({drift(daemon, sensor)["verdict"] for sensor in sensors}),
-            "valid": sum(report["pose"]["valid"] for report in reports), "load_average": round(os.getloadavg()[0], 1)}
+            "valid": sum(report["pose"]["valid"] for report in reports), "no_view": refused(earlier, reports), "load_average": round(os.getloadavg()[0], 1)}
     for sensor in sensors:
         simulator.tell("PUT", f"/sensors/{sensor}/mode", mode="normal")
     return line
