@@ -11,10 +11,11 @@ import argparse
 import collections
 import math
 import random
+import statistics
 import time
 
 from healing import direction
-from live import SENSOR, WORKING, drift, machine, quantile, say, settle, table, wait_until, working_cell
+from live import SENSOR, WORKING, drift, machine, say, settle, table, wait_until, working_cell
 from poses import difference
 
 VERDICTS = ("in_place", "sensor_moved", "something_in_front", "scene_changed", "robot_model_wrong", "depth_bias_changed",
@@ -117,7 +118,7 @@ class Listener:
         self.simulator, self.daemon, self.stage = simulator, daemon, stage
         self.seconds: dict[str, float] = collections.defaultdict(float)
         self.first_s = math.nan
-        self.wrong = 0
+        self.valid_s, self.wrong = 0.0, 0
 
     def listen(self, seconds: float, staged: bool) -> None:
         begin = last = time.monotonic()
@@ -129,12 +130,13 @@ class Listener:
             self.seconds[verdict] += now - last
             if verdict == self.stage.right and math.isnan(self.first_s):
                 self.first_s = now - begin
-            self.look_at_pose(now - begin)
+            self.look_at_pose(now - begin, now - last)
             last = now
             time.sleep(PERIOD_S)
 
-    def look_at_pose(self, after_s: float) -> None:
+    def look_at_pose(self, after_s: float, passed_s: float) -> None:
         pose = self.daemon.pose()
+        self.valid_s += passed_s * pose["valid"]
         if pose["valid"] and after_s > 1:  # a knock needs its moment to be found
             mm, mrad = difference(pose["T_base_sensor"], self.simulator.true_pose())
             self.wrong += mm > TRUE_MM or mrad > TRUE_MRAD
@@ -190,7 +192,8 @@ def run_event(simulator, daemon, stage: Stage) -> dict:
     last = drift(daemon)
     return {"event": stage.right, "what": stage.what, "verdict": listener.told(), "before": quiet.told(),
             "first_s": round(listener.first_s, 2), "seconds": {v: round(s, 1) for v, s in listener.seconds.items()},
-            "pose_before": pose, "pose_wrong_though_valid": listener.wrong, "statistic": round(last["statistic"], 2),
+            "pose_before": pose, "pose_valid_s": round(listener.valid_s, 1),
+            "pose_wrong_though_valid": listener.wrong, "statistic": round(last["statistic"], 2),
             "depth_offset_change_mm": round(1e3 * last["depth_offset_change_m"], 2), "background": last["background"],
             "recovered": recover(simulator, daemon, stage)}
 
@@ -201,8 +204,9 @@ def show(lines: list[dict]) -> None:
     for event in VERDICTS:
         these = [line for line in lines if line["event"] == event]
         if these:
-            first = quantile([line["first_s"] for line in these if not math.isnan(line["first_s"])], 0.5)
-            rows.append([event, *(counts[event, said] or "" for said in VERDICTS), f"{first:.2f}"])
+            first = [line["first_s"] for line in these if not math.isnan(line["first_s"])]
+            rows.append([event, *(counts[event, said] or "" for said in VERDICTS),
+                         f"{statistics.median(first):.2f}" if first else "never"])
     table(["staged \\ said", *VERDICTS, "first said after, median s"], rows)
     right = sum(line["event"] == line["verdict"] for line in lines)
     wrong = sum(line["pose_wrong_though_valid"] > 0 for line in lines)

@@ -12,12 +12,13 @@ import http.client
 import json
 import math
 import random
+import statistics
 import sys
 import threading
 import time
 from datetime import datetime
 
-from live import SENSOR, WORKING, machine, quantile, say, settle, table, working_cell
+from live import SENSOR, WORKING, machine, say, settle, table, working_cell
 from poses import axis_turn, difference, multiply
 
 SHIFT_M, TURN_DEG = 0.030, 3.0
@@ -107,7 +108,8 @@ def watch(client: Client, begin: float) -> None:
 
 def attempt(job: dict, truth) -> dict:
     result = job.get("result", {"verdict": "under way"})
-    line = {"verdict": result["verdict"], "postures": job["postures"], "reasons": [r["code"] for r in result.get("reasons", [])]}
+    line = {"verdict": result["verdict"], "postures": job["postures"],
+            "reasons": [reason["code"] for reason in result.get("reasons", [])]}
     if "finished" in job:
         line["seconds"] = round(job["finished"] - job["created"], 2)
     if result.get("T_base_sensor"):
@@ -137,7 +139,8 @@ def judge(client: Client, begin: float, truth) -> dict:
     valid = [pose["valid"] for _, pose in answers]
     line = {"found_s": found, "healed_s": new[0], "rises_of_valid": sum(b and not a for a, b in zip(valid, valid[1:])),
             "asked": len(answers), "wrong_though_valid": len(wrong), "wrong_after_found": sum(t > found for t in wrong),
-            "states": changes(answers)}
+            "states": changes(answers),
+            "doubts": sorted({pose["reason"] for t, pose in answers if not pose["valid"] and t > new[0]})}
     if new[1]:
         mm, mrad = difference(new[1]["T_base_sensor"], truth)
         line |= {"mm": mm, "mrad": mrad, "sigma_mm": 1e3 * new[1]["sigma_position_m"],
@@ -185,11 +188,16 @@ def show(lines: list[dict]) -> None:
     rows = []
     for name, key in ROWS:
         values = [line[key] for line in lines if not math.isnan(line.get(key, math.nan))]
-        rows.append([name, f"{quantile(values, 0.5):.2f}", f"{max(values, default=math.nan):.2f}"])
+        rows.append([name, *(f"{of(values) if values else math.nan:.2f}" for of in (statistics.median, max))])
     table([f"{len(lines)} knocks of {1e3 * SHIFT_M:.0f} mm and {TURN_DEG:.0f} degrees", "median", "worst"], rows)
-    print(f"healed {len(healed)} of {len(lines)}; valid again more than once: {sum(l['rises_of_valid'] > 1 for l in lines)}; "
+    print(f"healed {len(healed)} of {len(lines)}, within 2 s {sum(line['healed_s'] <= 2 for line in healed)}, within 5 s "
+          f"{sum(line['healed_s'] <= 5 for line in healed)}; valid again more than once: {sum(l['rises_of_valid'] > 1 for l in lines)}; "
           f"answers valid though off by more than {WRONG_MM:.0f} mm or mrad: {sum(l['wrong_though_valid'] for l in lines)} of "
           f"{sum(l['asked'] for l in lines)}, after it had been found: {sum(l['wrong_after_found'] for l in lines)}; {machine()}")
+
+
+def rounded(line: dict) -> dict:
+    return {key: round(value, 3) if isinstance(value, float) else value for key, value in line.items()}
 
 
 def main(arguments: list[str]) -> None:
@@ -203,7 +211,7 @@ def main(arguments: list[str]) -> None:
             for _ in range(min(KNOCKS_PER_CELL, count - len(lines))):
                 line = knock_once(simulator, daemon, source, home)
                 lines.append(line)
-                say(knock=len(lines), seed=seed, **{k: round(v, 3) if isinstance(v, float) else v for k, v in line.items()})
+                say(knock=len(lines), seed=seed, **rounded(line))
                 if math.isnan(line["healed_s"]):
                     break  # another cell
     show(lines)

@@ -4,7 +4,6 @@
 
 import contextlib
 import json
-import math
 import os
 import sys
 import tempfile
@@ -16,12 +15,6 @@ from cell import SENSOR, Daemon, Simulator, wait_until  # noqa: E402, F401
 
 #: Minutes at a real cell are shortened: the robot hurries from posture to posture and stays 0.8 s at each.
 WORKING = {"mode": "run", "seed": 11, "count": 12, "speed_rad_s": 2.0, "hold_s": 0.8}
-
-
-def quantile(values, share: float) -> float:
-    """The smallest value that `share` of them do not exceed; nothing of none."""
-    ordered = sorted(values)
-    return ordered[max(0, math.ceil(share * len(ordered)) - 1)] if ordered else math.nan
 
 
 def say(**line) -> None:

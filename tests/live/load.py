@@ -135,7 +135,8 @@ def measure(simulator: Simulator, daemon: Daemon, sensors: list[str], motion: st
     line = {"sensors": len(sensors), "robot": motion, "least_frames_per_s": round(min(rates), 1), **cores,
             "cores_per_sensor": round(counted / len(sensors), 3), **family.memory_mb(),
             "verdicts": sorted({drift(daemon, sensor)["verdict"] for sensor in sensors}),
-            "valid": sum(report["pose"]["valid"] for report in reports), "no_view": refused(earlier, reports), "load_average": round(os.getloadavg()[0], 1)}
+            "valid": sum(report["pose"]["valid"] for report in reports),
+            "no_view": refused(earlier, reports), "load_average": round(os.getloadavg()[0], 1)}
     for sensor in sensors:
         simulator.tell("PUT", f"/sensors/{sensor}/mode", mode="normal")
     return line
