@@ -5,7 +5,8 @@
 # Figures of the live cell (docs/figures.md): the daemon and the simulated cell over their real links. JSON lines and a table.
 #   scripts/live.sh healing [KNOCKS [SEED]] [--slow]      a sensor that is knocked: until its pose is true again; 4 minutes
 #   scripts/live.sh load [SECONDS [SENSORS...]]           what watching 1, 2, 4 and 8 sensors at 30 Hz costs; 6 minutes
-#   scripts/live.sh events [--rounds N] [--seed S] [--event VERDICT]   what is staged against what is said; 5 minutes a round
+#   scripts/live.sh events [--rounds N] [--seed S] [--event VERDICT] [--knocks-first]
+#                                                         what is staged against what is said; 5 minutes a round
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -5,7 +5,7 @@
 
 A verdict is judged as scripts/watch.sh does it: that the sensor has moved, if it was ever said; else what is right, if it was
 shown for 2 s; else what was shown for longest besides `in_place`. 12 s for each event, 30 s for joint zeros. JSON lines, then
-a table.      usage: events.py [--rounds N] [--seed S] [--event VERDICT]"""
+a table.      usage: events.py [--rounds N] [--seed S] [--event VERDICT] [--knocks-first]"""
 
 import argparse
 import collections
@@ -15,7 +15,7 @@ import statistics
 import time
 
 from healing import direction
-from live import SENSOR, WORKING, drift, machine, say, settle, table, wait_until, working_cell
+from live import SENSOR, WORKING, drift, known, machine, say, settle, table, wait_until, working_cell
 from poses import difference
 
 VERDICTS = ("in_place", "sensor_moved", "something_in_front", "scene_changed", "robot_model_wrong", "depth_bias_changed",
@@ -96,14 +96,15 @@ def no_frames() -> Stage:
     return Stage("no_evidence", "frames stop", [("PUT", MODE, {"mode": "silent"})], [("PUT", MODE, {"mode": "normal"})])
 
 
-def stages_of(source: random.Random, usual: dict) -> list[Stage]:
+def stages_of(source: random.Random, usual: dict, knocks_first: bool) -> list[Stage]:
     boxes = ["box_blue", "box_tall", "box_red"]
     source.shuffle(boxes)
-    return [Stage("in_place", "nothing", [], []), knock(source, source.uniform(3, 5), source.uniform(3, 5)),
-            knock(source, source.uniform(6, 15), source.uniform(5, 20)), knock(source, 30, 52),
-            person(source, 0.6, 1.0), person(source, -1.2, 0.0), box(source, boxes[0], False), box(source, boxes[1], True),
-            robot_brought(), joint_zero(source), joint_zero(source), range_off(source, usual, False),
-            range_off(source, usual, True), dark(usual), no_frames()]
+    knocks = [knock(source, source.uniform(3, 5), source.uniform(3, 5)),
+              knock(source, source.uniform(6, 15), source.uniform(5, 20)), knock(source, 30, 52)]
+    others = [Stage("in_place", "nothing", [], []), person(source, 0.6, 1.0), person(source, -1.2, 0.0),
+              box(source, boxes[0], False), box(source, boxes[1], True), robot_brought(), joint_zero(source), joint_zero(source),
+              range_off(source, usual, False), range_off(source, usual, True), dark(usual), no_frames()]
+    return knocks + others if knocks_first else others + knocks
 
 
 def tell(simulator, calls) -> None:
@@ -169,18 +170,17 @@ def recover(simulator, daemon, stage: Stage) -> str:
 
 
 def is_true(simulator, daemon) -> bool:
-    mm, mrad = difference(daemon.pose()["T_base_sensor"], simulator.true_pose())
+    mm, mrad = difference(known(daemon.pose())["T_base_sensor"], simulator.true_pose())
     return mm <= TRUE_MM and mrad <= TRUE_MRAD
 
 
 def pose_of(simulator, daemon) -> dict:
     """How true the pose is that the sensor is watched from."""
     pose = daemon.pose()
-    if not pose["valid"]:
-        return {"state": pose["state"]}
-    mm, mrad = difference(pose["T_base_sensor"], simulator.true_pose())
-    return {"mm": round(mm, 2), "mrad": round(mrad, 2), "sigma_mm": round(1e3 * pose["sigma_position_m"], 2),
-            "sigma_mrad": round(1e3 * pose["sigma_rotation_rad"], 2)}
+    found = known(pose)
+    mm, mrad = difference(found["T_base_sensor"], simulator.true_pose())
+    return {"valid": pose["valid"], "mm": round(mm, 2), "mrad": round(mrad, 2),
+            "sigma_mm": round(1e3 * found["sigma_position_m"], 2), "sigma_mrad": round(1e3 * found["sigma_rotation_rad"], 2)}
 
 
 def run_event(simulator, daemon, stage: Stage) -> dict:
@@ -225,12 +225,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1, help="events of every kind as often as that")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--event", choices=VERDICTS, help="those alone")
+    parser.add_argument("--knocks-first", action="store_true",
+                        help="the other events are then seen from a pose that a healing has found, and from its background")
     options = parser.parse_args()
     lines = []
     for number in range(options.rounds):
         seed = options.seed + number
         with working_cell(motion=WORKING | {"seed": 10 + seed}) as (simulator, daemon):
-            for stage in stages_of(random.Random(seed), range_errors(simulator)):
+            for stage in stages_of(random.Random(seed), range_errors(simulator), options.knocks_first):
                 if options.event in (None, stage.right):
                     lines.append({"seed": seed} | run_event(simulator, daemon, stage))
                     say(**lines[-1])

@@ -18,7 +18,7 @@ import threading
 import time
 from datetime import datetime
 
-from live import SENSOR, WORKING, machine, say, settle, table, working_cell
+from live import SENSOR, WORKING, known, machine, say, settle, table, working_cell
 from poses import axis_turn, difference, multiply
 
 SHIFT_M, TURN_DEG = 0.030, 3.0
@@ -96,7 +96,7 @@ class Client(threading.Thread):
 
 def watch(client: Client, begin: float) -> None:
     """Until a new pose has been valid for some seconds, or patience ends."""
-    before, since = client.answers[-1][1]["calibration"], None
+    before, since = known(client.answers[-1][1])["calibration"], None
     while time.monotonic() - begin < PATIENCE_S:
         time.sleep(0.05)
         newest = client.answers[-1][1]
@@ -125,13 +125,14 @@ def stages(client: Client, begin: float, healed: float, truth) -> dict:
     if good:
         running = good.get("running", good["finished"])
         line |= {"to_first_job_s": jobs[0]["created"] - begin, "postures": good["postures"],
-                 "number_of_attempts": len(jobs), "earlier_attempts_s": good["created"] - jobs[0]["created"], "collecting_s": running - good["created"],
+                 "number_of_attempts": len(jobs), "earlier_attempts_s": good["created"] - jobs[0]["created"],
+                 "collecting_s": running - good["created"],
                  "computing_s": good["finished"] - running, "to_valid_s": healed - good["finished"]}
     return line
 
 
 def judge(client: Client, begin: float, truth) -> dict:
-    before = client.answers[0][1]["calibration"]
+    before = known(client.answers[0][1])["calibration"]
     answers = [(t - begin, pose) for t, pose in client.answers if t >= begin]
     wrong = [t for t, pose in answers if pose["valid"] and is_wrong(pose, truth)]
     found = next((t for t, pose in answers if not pose["valid"]), math.nan)
@@ -166,6 +167,7 @@ def changes(answers) -> list:
 def knock_once(simulator, daemon, source: random.Random, home) -> dict:
     settle(daemon)
     time.sleep(source.uniform(3, 6))  # the robot is somewhere in its work, and the background is known well
+    settle(daemon)
     client = Client(daemon.port)
     client.start()
     time.sleep(0.2)
@@ -178,7 +180,8 @@ def knock_once(simulator, daemon, source: random.Random, home) -> dict:
 
 
 ROWS = (("knock to `valid` = false, s", "found_s"), ("knock to the new valid pose, s", "healed_s"),
-        ("knock to the first attempt, s", "to_first_job_s"), ("attempts", "number_of_attempts"), ("attempts before the one that succeeded, s", "earlier_attempts_s"),
+        ("knock to the first attempt, s", "to_first_job_s"), ("attempts", "number_of_attempts"),
+        ("attempts before the one that succeeded, s", "earlier_attempts_s"),
         ("its collecting, s", "collecting_s"), ("its computing, s", "computing_s"), ("its end to the pose served, s", "to_valid_s"),
         ("error of the new pose, mm", "mm"), ("error, mrad", "mrad"), ("sigma told, mm", "sigma_mm"), ("sigma told, mrad", "sigma_mrad"))
 

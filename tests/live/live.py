@@ -40,6 +40,11 @@ def wait_verdict(daemon: Daemon, verdict: str, timeout_s: float = 60.0) -> dict:
                       timeout_s)
 
 
+def known(pose: dict) -> dict:
+    """What is known of the pose, valid or not: calibration, T_base_sensor, sigmas."""
+    return pose if pose["valid"] else pose["last_known"] or {}
+
+
 def settle(daemon: Daemon, timeout_s: float = 90.0) -> None:
     """Waits until the pose is served and the watch says that the sensor stands."""
     wait_until("the pose is valid", lambda: daemon.pose()["valid"], timeout_s)
