@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/calibration/calibrate.hpp"
-#include "core/drift/drift_watch.hpp"
+#include "core/drift/drift_report.hpp"
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/planning/next_posture.hpp"
@@ -168,7 +168,7 @@ struct CalibrationRequest {
   std::string idempotency_key;  ///< empty: none
   std::string fingerprint;      ///< equal for requests that ask for the same
   /// How long to go on collecting once a posture has been seen; nothing: until all have been.
-  std::optional<Seconds> patience;
+  std::optional<Seconds> patience = {};
   bool after_move = false;  ///< the sensor has moved: start from where its background says it is
 };
 

@@ -31,7 +31,7 @@ std::string degrees(double angle_rad) {
 struct Input {
   Views views;
   CameraModel camera;
-  std::vector<std::size_t> taken;  // of all views
+  std::vector<std::size_t> taken = {};  // of all views
 };
 
 void mirror(std::vector<float>& depth, const CameraModel& camera) {

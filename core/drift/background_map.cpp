@@ -157,4 +157,13 @@ const std::vector<std::uint8_t>& RobotMask::at(std::span<const double> positions
   return mask_;
 }
 
+BackgroundMap learn_background(RobotMask& robot, const CameraModel& camera, std::span<const View> views,
+                               const Pose& T_base_sensor) {
+  std::vector<std::vector<std::uint8_t>> masks;
+  for (const View& view : views) masks.push_back(robot.at(view.joint_positions_rad, T_base_sensor));
+  BackgroundMap background(camera);
+  background.learn(views, masks);
+  return background;
+}
+
 }  // namespace calibrd

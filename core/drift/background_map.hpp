@@ -95,4 +95,8 @@ class RobotMask {
   std::vector<std::uint8_t> mask_;
 };
 
+/// The background that `views` of a sensor that stood at `T_base_sensor` show, as BackgroundMap::learn().
+BackgroundMap learn_background(RobotMask& robot, const CameraModel& camera, std::span<const View> views,
+                               const Pose& T_base_sensor);
+
 }  // namespace calibrd

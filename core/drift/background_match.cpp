@@ -220,8 +220,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   classify(robot, found, observation);
   observation.has_evidence = found.used >= kLeastCells && observation.share(CellState::same) >= kLeastShare;
   if (found.used < kLeastCells) return observation;
-  Matrix6d turn = Matrix6d::Zero();  // from sensor to base axes
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_base_sensor;
+  const Matrix6d turn = turn_of_axes(R_base_sensor);
   observation.shift = turn * found.solution.head<6>();
   observation.covariance = turn * found.covariance.topLeftCorner<6, 6>() * turn.transpose();
   observation.offset_change_m = found.solution[6];

@@ -16,17 +16,23 @@ constexpr float kLeastMeanFrames = 20;
 
 }  // namespace
 
-/// What the robot carries moves with the end of its arm.
-void DriftWatch::mark_carried(const View& frame) {
-  carried_.assign(map_.cells().size(), 0);
-  if (frame.joint_positions_rad.empty()) return;
-  const auto& model = robot_.cell().robot();
+/// Links that end the arm, or arms.
+std::vector<std::size_t> DriftWatch::tips_of(const RobotModel& model) {
   std::vector<bool> ends(model.links().size(), true);
   for (const Joint& joint : model.joints()) ends[static_cast<std::size_t>(joint.parent_link)] = false;
-  std::vector<Eigen::Vector3d> tips_sensor;
+  std::vector<std::size_t> tips;
   for (std::size_t l = 0; l < ends.size(); ++l)
-    if (ends[l] && model.links()[l].parent_joint >= 0)
-      tips_sensor.push_back(T_base_sensor_.inverse() * robot_.cell().link_poses()[l].translation());
+    if (ends[l] && model.links()[l].parent_joint >= 0) tips.push_back(l);
+  return tips;
+}
+
+/// What the robot carries moves with the end of its arm.
+void DriftWatch::mark_carried() {
+  carried_.assign(map_.cells().size(), 0);
+  const Pose T_sensor_base = T_base_sensor_.inverse();
+  std::vector<Eigen::Vector3d> tips_sensor;
+  for (const std::size_t link : tips_)
+    tips_sensor.push_back(T_sensor_base * robot_.cell().link_poses()[link].translation());
   const double reach = settings_.carried_reach_m * settings_.carried_reach_m;
   for (std::size_t i = 0; i < carried_.size(); ++i) {
     if (matcher_.states()[i] != CellState::nearer) continue;
@@ -61,7 +67,7 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
 void DriftWatch::absorb(double now_s) {
   if (now_s - absorbed_s_ < kAbsorbEvery_s) return;
   absorbed_s_ = now_s;
-  if (moved_ || is_doubtful() || !is_seen()) return;
+  if (moved_ || is_doubtful() || !is_known_to_stand()) return;
   take(scene_.unchanged_for(settings_.absorb_s));
 }
 

@@ -18,6 +18,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 /// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
 /// the background is still where it was: a fit to less settles anywhere.
 constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
+constexpr double kRobotHolds_s = 10;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -34,6 +35,7 @@ DriftWatch::DriftWatch(const VirtualCell& cell, const CameraModel& camera, const
     : settings_(settings),
       camera_(camera),
       robot_(cell, camera),
+      tips_(tips_of(cell.robot())),
       map_(camera),
       matcher_(map_),
       scene_(settings.scene, map_.grid().width),
@@ -43,19 +45,15 @@ DriftWatch::DriftWatch(const VirtualCell& cell, const CameraModel& camera, const
 
 void DriftWatch::set_pose(const Pose& T_base_sensor) {
   T_base_sensor_ = T_base_sensor;
-  map_ = BackgroundMap(camera_);
-  learn({});
+  set_background(BackgroundMap(camera_));
 }
 
 void DriftWatch::learn(std::span<const View> views) {
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (const View& view : views) masks.push_back(robot_.at(view.joint_positions_rad, T_base_sensor_));
-  map_.learn(views, masks);
-  start_over();
+  set_background(learn_background(robot_, camera_, views, T_base_sensor_));
 }
 
-void DriftWatch::recall(std::span<const float> depth_m) {
-  map_.recall(depth_m);
+void DriftWatch::set_background(BackgroundMap background) {
+  map_ = std::move(background);
   start_over();
 }
 
@@ -96,7 +94,7 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     describe(observation);
     refine(observation, frame_s_);
     if (!frame.joint_positions_rad.empty()) {  // else what seems to stand in front may be the robot
-      mark_carried(frame);
+      mark_carried();
       scene_.add(matcher_.states(), matcher_.depth_m(), carried_, frame_s_);
       if (scene_.is_something_in_front()) in_front_s_ = frame_s_;
       absorb_what_moved_as_one(frame_s_);
@@ -115,9 +113,7 @@ void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservat
   if (!found) found = align_background(map_, matcher_.depth_m(), robot, Pose::Identity());
   if (!found) return T_learnt_now_.reset();
   T_learnt_now_ = found->T_learnt_now;
-  const Eigen::Matrix3d R = T_base_sensor_.linear();
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R;
+  const Matrix6d turn = turn_of_axes(T_base_sensor_.linear());
   observation.has_evidence = observation.realigned = true;
   observation.shift = difference(T_base_sensor_, T_base_sensor_ * found->T_learnt_now);
   observation.covariance = turn * found->covariance * turn.transpose();
@@ -199,7 +195,16 @@ bool DriftWatch::is_in_place() const {
   return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
 }
 
-bool DriftWatch::is_seen() const { return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9); }
+/// Something has said just now that the sensor stands, in every direction.
+bool DriftWatch::is_known_to_stand() const {
+  return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9);
+}
+
+/// A wall leaves directions open: of these the robot's word holds longer, while it works and the wall stands.
+bool DriftWatch::is_seen() const {
+  const bool told = check_ && check_->agrees && frame_s_ - check_s_ < kRobotHolds_s;
+  return is_known_to_stand() || (told && frame_s_ - evidence_s_ < kEvidence_s);
+}
 
 void DriftWatch::judge(double now_s) {
   const bool in_front = now_s - in_front_s_ < kInFront_s;

@@ -7,7 +7,7 @@
 
 #include "core/calibration/check_pose.hpp"
 #include "core/drift/background_match.hpp"
-#include "core/drift/drift_verdict.hpp"
+#include "core/drift/drift_report.hpp"
 #include "core/drift/scene_change.hpp"
 #include "core/drift/shift_test.hpp"
 
@@ -24,19 +24,6 @@ struct DriftSettings {
   double pinned_m = 0.003, pinned_rad = 0.003;
 };
 
-/// One look at the watch.
-struct DriftReport {
-  DriftVerdict verdict = DriftVerdict::no_evidence;
-  bool has_background = false;
-  double statistic = 0, threshold = 0;  ///< of the test for a moved sensor
-  double turn_rad = 0, shift_m = 0;     ///< mean over some frames; the shift is that of what the sensor sees
-  double turn_sigma_rad = 0, shift_sigma_m = 0;        ///< of one frame
-  double depth_offset_change_m = 0;                    ///< mean over a second
-  double same = 0, nearer = 0, farther = 0, dark = 0;  ///< shares of the background in view
-  std::optional<Pose>
-      T_base_sensor_seen;  ///< where the background says the sensor is; only once it has moved
-};
-
 /// Watches one sensor's pose, frame by frame: the remembered background tells within some frames whether the
 /// sensor has moved, the robot whether it is the sensor or the robot that is off. Without I/O; one thread.
 class DriftWatch {
@@ -51,8 +38,8 @@ class DriftWatch {
   /// The background as the sensor saw it where the pose holds: views it stood still for, of a robot in
   /// different postures (one shows nothing behind the robot).
   void learn(std::span<const View> views);
-  /// The background as it was learnt once before, for this very pose: see BackgroundMap::recall().
-  void recall(std::span<const float> depth_m);
+  /// The background as it was learnt before, for this very pose.
+  void set_background(BackgroundMap background);
   bool has_background() const { return !map_.is_empty(); }
 
   /// The next frame; joint_positions_rad empty when they are not known.
@@ -82,7 +69,8 @@ class DriftWatch {
   void test(const BackgroundObservation& observation);
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
-  void mark_carried(const View& frame);
+  static std::vector<std::size_t> tips_of(const RobotModel& model);
+  void mark_carried();
   void refine(const BackgroundObservation& observation, double now_s);
   void absorb(double now_s);
   void absorb_what_moved_as_one(double now_s);
@@ -94,6 +82,7 @@ class DriftWatch {
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
   bool is_robots_shift_possible() const;
+  bool is_known_to_stand() const;
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
@@ -103,6 +92,7 @@ class DriftWatch {
   CameraModel camera_;
   Pose T_base_sensor_ = Pose::Identity();
   RobotMask robot_;
+  std::vector<std::size_t> tips_;  // links
   BackgroundMap map_;
   BackgroundMatcher matcher_;
   SceneChange scene_;

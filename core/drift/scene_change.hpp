@@ -29,8 +29,6 @@ class SceneChange {
 
   bool has_changed() const { return settled_ >= settings_.least_cells; }
   bool is_something_in_front() const { return passing_ >= settings_.least_cells; }
-  std::size_t settled_cells() const { return settled_; }
-  std::size_t passing_cells() const { return passing_; }
 
   /// Cells that have shown one and the same other depth for `seconds`, or that nothing was known of:
   /// row-major, 1 = so.

@@ -37,6 +37,12 @@ Vector6d difference(const Pose& from, const Pose& to) {
   return delta;
 }
 
+Matrix6d turn_of_axes(const Eigen::Matrix3d& R_a_b) {
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_a_b;
+  return turn;
+}
+
 Pose turned_about(const Pose& T_base_sensor, const Eigen::Vector3d& pivot_sensor,
                   const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& shift_m) {
   const Eigen::Vector3d pivot_base = T_base_sensor * pivot_sensor;

@@ -26,6 +26,9 @@ Pose perturbed(const Pose& T_base_sensor, const Vector6d& delta);
 /// The `delta` with perturbed(from, delta) == to.
 Vector6d difference(const Pose& from, const Pose& to);
 
+/// Takes a δ = (δω, δt) of axes b to axes a: δ_a = turn_of_axes(R_a_b) * δ_b.
+Matrix6d turn_of_axes(const Eigen::Matrix3d& R_a_b);
+
 /// Turns `T_base_sensor` about the point `pivot_sensor` (m, sensor frame), then moves it by `shift_m` (base
 /// axes).
 Pose turned_about(const Pose& T_base_sensor, const Eigen::Vector3d& pivot_sensor,

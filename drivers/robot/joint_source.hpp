@@ -27,7 +27,7 @@ struct ControllerJoints {
   std::uint64_t sequence = 0;  ///< counts joint messages since start; a gap: older ones came in the same read
   Clock::time_point stamp;     ///< monotonic time of reception of the message's first byte
   /// The controller's own clock (s since its start) when the joints were there; unset where it sends none.
-  std::optional<double> controller_time_s;
+  std::optional<double> controller_time_s = {};
 };
 
 /// How a robot link is doing, in words a person can act on. What each state means: docs/controllers.md.

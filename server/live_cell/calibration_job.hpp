@@ -12,6 +12,9 @@ namespace calibrd {
 /// Of the progress of a job: collecting takes it here, computing from here to 1.
 inline constexpr double kCollectingShare = 0.5;
 
+/// Without a guess the sensor is found from what moves between two postures.
+inline int least_postures(const std::optional<Pose>& guess) { return guess ? 1 : 2; }
+
 /// One calibration under way. Report and flags are guarded by the mutex of CalibrationJobs.
 struct CalibrationJobs::Job {
   api::CalibrationReport report;
@@ -20,7 +23,8 @@ struct CalibrationJobs::Job {
   std::shared_ptr<CollectTask> task;
   Clock::time_point deadline;                      ///< of collecting
   std::optional<Clock::time_point> patient_until;  ///< then what has been seen is enough
-  std::vector<View> views;                         ///< that it was computed from
+  Clock::time_point seen_at;                       ///< when the last of its views was taken
+  Background background;                           ///< that its views show, once it is accepted
   std::atomic<bool> cancelled{false};
   bool is_ending = false;  ///< its end is being stored
 };

@@ -18,9 +18,6 @@ using api::JobStatus;
 
 namespace {
 
-/// Without a guess the sensor is found from what moves between two postures.
-constexpr int kPosturesFromNothing = 2;
-
 /// `guess`: what the cell would start from.
 std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::optional<Pose>& guess) {
   if (request.guess_T_base_sensor || request.from_nothing) return request.guess_T_base_sensor;
@@ -68,7 +65,7 @@ Result<CalibrationReport> CalibrationJobs::start(const api::CalibrationRequest& 
     return fail(ApiError::calibration_in_progress, busy);
   const auto start_pose = start_of(request, guess);
   if (!start_pose && request.method == Method::paper) return fail(ApiError::paper_needs_guess, sensor.id());
-  if (!start_pose && request.postures && *request.postures < kPosturesFromNothing)
+  if (request.postures && *request.postures < least_postures(start_pose))
     return fail(ApiError::guess_needed, sensor.id());
   const auto job = make_job(request, sensor, start_pose);
   if (auto added = store_.add(job->report, request); !added)
@@ -104,7 +101,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   collector.postures = request.postures.value_or(collector.postures);
   // A robot at work must not be waited for while there is no pose.
   collector.moving_views = collector.moving_views || request.after_move;
-  if (!guess) collector.postures = std::max(collector.postures, kPosturesFromNothing);
+  collector.postures = std::max(collector.postures, least_postures(guess));
   job->report.id = new_id();
   job->report.sensor_id = sensor.id();
   job->report.created = std::chrono::system_clock::now();
@@ -164,7 +161,7 @@ Result<CalibrationReport> CalibrationJobs::cancel(const std::string& id) {
   }
   job->task->cancel();
   // A computation sees the flag and ends by itself.
-  if (!is_computing) end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
+  if (!is_computing) end(job, JobStatus::cancelled, "Cancelled on request.");
   return find(id);
 }
 

@@ -32,11 +32,14 @@ struct JobSettings {
 /// thread. Errors: api::ApiError.
 class CalibrationJobs {
  public:
-  /// Called for a calibration that has just become the current one. `seen_at`: when its last view was taken.
-  using Publish = std::function<void(const api::CalibrationReport&, std::optional<Clock::time_point> seen_at,
-                                     std::vector<View> views)>;
-  /// Looks at what was found, on the jobs' thread, before it is stored or published; may make it uncertain.
-  using Review = std::function<void(LiveSensor& sensor, std::span<const View> views, CalibrationResult&)>;
+  using Background = std::shared_ptr<const BackgroundMap>;
+  /// Called for a calibration that has succeeded and is stored; `current`: its pose is the one to serve now.
+  /// `seen_at`: when its last view was taken.
+  using Publish = std::function<void(const api::CalibrationReport&, Clock::time_point seen_at, Background)>;
+  /// Looks at an accepted result, on the jobs' thread, before it is stored or published; may make it
+  /// uncertain. Returns what its views show around the robot; nullptr where nobody watches for drift.
+  using Review =
+      std::function<Background(LiveSensor& sensor, std::span<const View> views, CalibrationResult&)>;
   using Log = std::function<void(const api::CalibrationReport&)>;
 
   /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
@@ -76,9 +79,9 @@ class CalibrationJobs {
   void compute(const JobPointer& job);
   CalibrationResult calibrate(const JobPointer& job, std::span<const View> views);
   void end(const JobPointer& job, api::JobStatus status, std::string message,
-           std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at);
+           std::optional<CalibrationResult> result = {});
   void end_overdue(const JobPointer& job);
-  void end_computed(const JobPointer& job, CalibrationResult result, Clock::time_point seen_at);
+  void end_computed(const JobPointer& job, CalibrationResult result);
   bool store_end(api::CalibrationReport& report, const std::string& basis);
   api::CalibrationReport report_of(const Job& job) const;
   void tell_of_drop(const std::string& id) const;

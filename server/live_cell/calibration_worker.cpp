@@ -16,6 +16,10 @@ namespace {
 constexpr auto kLongWait = std::chrono::hours(1);
 constexpr auto kImpatience = std::chrono::milliseconds(50);  // how often is looked whether a posture has come
 
+bool is_accepted(const CalibrationResult& result) {
+  return result.verdict == Verdict::accepted && result.T_base_sensor;
+}
+
 /// Why a calibration without an accepted result has failed, from its reasons.
 std::string failure_message(const CalibrationResult& result) {
   std::string message =
@@ -71,7 +75,7 @@ void CalibrationJobs::run() {
 void CalibrationJobs::end_patience(Clock::time_point now) {
   for (const auto& [id, job] : jobs_)
     if (job->patient_until && now >= *job->patient_until && job->task->is_open())
-      job->task->settle_for_less();
+      job->task->settle_for_less(least_postures(job->guess));
 }
 
 /// The caller holds mutex_.
@@ -107,25 +111,24 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
                  dropped_postures(*job->task) + ". Move the robot, or ask for fewer postures.";
   if (const auto hindrance = job->sensor->hindrance(); !hindrance.empty())
     message += " Last: " + hindrance + ".";
-  end(job, JobStatus::failed, std::move(message), std::nullopt, std::nullopt);
+  end(job, JobStatus::failed, std::move(message));
 }
 
 void CalibrationJobs::compute(const JobPointer& job) {
-  job->views = job->task->take_views();
-  const auto& views = job->views;
-  const auto seen_at = time_of_last(views);
+  const auto views = job->task->take_views();
+  job->seen_at = time_of_last(views);
   auto result = calibrate(job, views);
   {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) return;  // the store calls it interrupted when it is opened again
   }
   if (job->cancelled) {
-    end(job, JobStatus::cancelled, "Cancelled on request.", std::nullopt, std::nullopt);
+    end(job, JobStatus::cancelled, "Cancelled on request.");
     return;
   }
-  if (review_) review_(*job->sensor, views, result);
+  if (review_ && is_accepted(result)) job->background = review_(*job->sensor, views, result);
   auto evidence = evidence_of(result, job->report.method, views);
-  end_computed(job, std::move(result), seen_at);
+  end_computed(job, std::move(result));
   if (evidence) job->sensor->set_evidence(*std::move(evidence));
 }
 
@@ -150,17 +153,15 @@ CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<co
   }
 }
 
-void CalibrationJobs::end_computed(const JobPointer& job, CalibrationResult result,
-                                   Clock::time_point seen_at) {
-  const bool accepted = result.verdict == Verdict::accepted && result.T_base_sensor;
+void CalibrationJobs::end_computed(const JobPointer& job, CalibrationResult result) {
+  const bool accepted = is_accepted(result);
   auto message = accepted ? std::string() : failure_message(result);
-  end(job, accepted ? JobStatus::succeeded : JobStatus::failed, std::move(message), std::move(result),
-      seen_at);
+  end(job, accepted ? JobStatus::succeeded : JobStatus::failed, std::move(message), std::move(result));
 }
 
 /// Stores the end first: a pose that is not on the disk is not published.
 void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string message,
-                          std::optional<CalibrationResult> result, std::optional<Clock::time_point> seen_at) {
+                          std::optional<CalibrationResult> result) {
   CalibrationReport report;
   {
     const std::lock_guard lock(mutex_);
@@ -174,8 +175,8 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   report.finished = std::chrono::system_clock::now();
   report.progress = 1;
   report.postures_seen = job->task->seen();
-  if (store_end(report, job->sensor->basis()) && report.current)
-    publish_(report, seen_at, std::move(job->views));
+  if (store_end(report, job->sensor->basis()) && status == JobStatus::succeeded)
+    publish_(report, job->seen_at, std::move(job->background));
   log_(report);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);

@@ -43,10 +43,10 @@ void CollectTask::cancel() {
   ended_.notify_all();
 }
 
-void CollectTask::settle_for_less() {
+void CollectTask::settle_for_less(int least) {
   const std::lock_guard lock(mutex_);
   if (is_cancelled_) return;
-  collector_.settle_for_less();
+  collector_.settle_for_less(least);
   if (collector_.is_complete()) ended_.notify_all();
 }
 

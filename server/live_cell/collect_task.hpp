@@ -26,8 +26,8 @@ class CollectTask {
   /// keeps its own.
   void start_over();
   void cancel();
-  /// What has been seen is enough, if anything has: the task is complete.
-  void settle_for_less();
+  /// What has been seen is enough, once that are `least` postures: the task is complete.
+  void settle_for_less(int least);
 
   bool is_open() const;  ///< neither complete nor cancelled: wants more views
   bool is_complete() const;

@@ -23,13 +23,12 @@ Clock::time_point time_of(double stamp_s) {
 
 }  // namespace
 
-void DriftMonitor::set_pose(const std::string& calibration_id, const Pose& T_base_sensor,
-                            Background background) {
+void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const BackgroundMap> background) {
   const std::lock_guard lock(mutex_);
-  order_ = Order{calibration_id, T_base_sensor, std::move(background)};
+  order_ = Order{T_base_sensor, background};
   has_pose_ = true;
   newest_ = {};
-  background_.reset();
+  background_ = background && !background->is_empty() ? std::move(background) : nullptr;
   in_place_ = wants_check_ = false;
 }
 
@@ -42,13 +41,7 @@ void DriftMonitor::take_order() {
   if (!order) return;
   passed_.clear();
   watch_->set_pose(order->T_base_sensor);
-  const auto& [views, depth_m] = order->background;
-  if (!depth_m.empty()) watch_->recall(depth_m);
-  if (!views.empty()) {
-    watch_->learn(views);
-    if (on_learnt_) on_learnt_(order->calibration_id, watch_->background().depths_m());
-  }
-  show_background();
+  if (order->background) watch_->set_background(*order->background);
 }
 
 void DriftMonitor::add_frame(const View& frame) {
@@ -99,10 +92,6 @@ void DriftMonitor::keep_for_background(const View& frame) {
   if (passed_.size() < (several ? kFramesToLearn : kMostFramesToLearn)) return;
   watch_->learn(passed_);
   passed_.clear();
-  show_background();
-}
-
-void DriftMonitor::show_background() {
   if (!watch_->has_background()) return;
   auto learnt = std::make_shared<const BackgroundMap>(watch_->background());
   const std::lock_guard lock(mutex_);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -17,19 +16,11 @@ namespace calibrd {
 /// from the sensor's thread; the rest is safe to call from any.
 class DriftMonitor {
  public:
-  /// Where the background of a pose comes from: the views it was found from; or its depths as learnt from
-  /// them once (BackgroundMap::recall()). Neither: it is learnt from frames that pass a check.
-  struct Background {
-    std::vector<View> views;
-    std::vector<float> depth_m;
-  };
-  using OnLearnt = std::function<void(const std::string& calibration_id, const std::vector<float>& depth_m)>;
-  /// `on_learnt` hears, on the sensor's thread, of a background that was learnt from the views of a pose.
-  DriftMonitor(std::unique_ptr<DriftWatch> watch, OnLearnt on_learnt)
-      : watch_(std::move(watch)), on_learnt_(std::move(on_learnt)) {}
+  explicit DriftMonitor(std::unique_ptr<DriftWatch> watch) : watch_(std::move(watch)) {}
 
-  /// Another pose, from the next frame on.
-  void set_pose(const std::string& calibration_id, const Pose& T_base_sensor, Background background);
+  /// Another pose, from the next frame on. `background`: as the sensor saw it when the pose was found;
+  /// nullptr: it is learnt from frames that pass a check.
+  void set_pose(const Pose& T_base_sensor, std::shared_ptr<const BackgroundMap> background);
 
   /// The next frame; joint_positions_rad empty where they are not known.
   void add_frame(const View& frame);
@@ -53,18 +44,15 @@ class DriftMonitor {
 
  private:
   struct Order {
-    std::string calibration_id;
     Pose T_base_sensor;
-    Background background;
+    std::shared_ptr<const BackgroundMap> background;
   };
   void take_order();
   void keep_for_background(const View& frame);
-  void show_background();
   void note(const DriftReport& report, double now_s);
 
   const std::unique_ptr<DriftWatch> watch_;  // the sensor's thread's own
-  const OnLearnt on_learnt_;
-  std::vector<View> passed_;  // frames to learn the background from; the thread's own
+  std::vector<View> passed_;                 // frames to learn the background from; the thread's own
 
   mutable std::mutex mutex_;  // guards what follows
   std::optional<Order> order_;

@@ -24,15 +24,15 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       obstacle_watch_(virtual_cell),
       jobs_(
           store, estimator_.calibrate,
-          [this](const auto& calibration, auto seen_at, auto views) {
-            publish(calibration, {seen_at, false, {}}, {std::move(views), {}});
+          [this](const auto& calibration, auto seen_at, const auto& background) {
+            adopt(calibration, seen_at, background);
           },
           [this](const auto& calibration) {
             if (log_.on_calibration) log_.on_calibration(calibration);
             healer_.on_calibration(calibration);
           },
           settings_.jobs,
-          [this](auto& sensor, auto views, auto& result) { compare_with_others(sensor, views, result); }),
+          [this](auto& sensor, auto views, auto& result) { return review(sensor, views, result); }),
       healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
 
 LiveCell::~LiveCell() {
@@ -69,7 +69,7 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
   if (const auto changes = basis_changes(stored.basis, sensor.basis()); !changes.empty())
     origin.objection = "the configuration has changed since the pose was found: " + changes +
                        "; calibrate again, or activate the calibration to use its pose all the same";
-  publish(stored.calibration, origin, stored_background(stored.calibration.id));
+  publish(stored.calibration, origin, stored_background(stored.calibration));
 }
 
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
@@ -89,22 +89,28 @@ void LiveCell::store_drift(const api::PoseReport& pose) {
 
 std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {
   if (!estimator_.make_watch) return nullptr;
-  return std::make_unique<DriftMonitor>(
-      estimator_.make_watch(setup.camera),
-      [this](const auto& calibration_id, const auto& depth_m) { store_background(calibration_id, depth_m); });
+  return std::make_unique<DriftMonitor>(estimator_.make_watch(setup.camera));
 }
 
-/// So that a sensor that is moved while nobody watches is found out after a restart, too.
-void LiveCell::store_background(const std::string& calibration_id, const std::vector<float>& depth_m) {
-  const auto stored = store_.add_background(calibration_id, depth_m);
+/// The background is stored so that a sensor that is moved while nobody watches is found out after a
+/// restart, too; also that of a calibration that waits to be activated.
+void LiveCell::adopt(const api::CalibrationReport& calibration, Clock::time_point seen_at,
+                     const CalibrationJobs::Background& background) {
+  if (calibration.current) publish(calibration, {seen_at, false, {}}, background);
+  if (!background) return;
+  const auto stored = store_.add_background(calibration.id, background->depths_m());
   if (!stored && log_.on_error)
-    log_.on_error("the background of calibration " + calibration_id +
+    log_.on_error("the background of calibration " + calibration.id +
                   " could not be stored: " + stored.error().message());
 }
 
-DriftMonitor::Background LiveCell::stored_background(const std::string& calibration_id) {
-  auto depth_m = store_.background(calibration_id);
-  return {{}, depth_m && *depth_m ? **std::move(depth_m) : std::vector<float>()};
+CalibrationJobs::Background LiveCell::stored_background(const api::CalibrationReport& calibration) {
+  const auto entry = entries_.find(calibration.sensor_id);
+  const auto depth_m = store_.background(calibration.id);
+  if (entry == entries_.end() || !depth_m || !*depth_m) return nullptr;
+  auto background = std::make_shared<BackgroundMap>(entry->second->setup.camera);
+  background->recall(**depth_m);
+  return background;
 }
 
 void LiveCell::start(const std::string& sensor_id, std::unique_ptr<DepthSource> source) {
@@ -124,7 +130,7 @@ void LiveCell::request_stop() {
 }
 
 void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-                       DriftMonitor::Background background) {
+                       CalibrationJobs::Background background) {
   const auto entry = entries_.find(calibration.sensor_id);
   if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
   entry->second->sensor->set_pose(
@@ -209,7 +215,7 @@ Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view i
   if (!entry) return entry.error();
   if (auto activated = store_.activate(*found, (*entry)->sensor->basis()); !activated)
     return fail(ApiError::storage_failed, activated.error().message());
-  publish(*found, {}, stored_background(found->id));
+  publish(*found, {}, stored_background(*found));
   return jobs_.find(std::string(id));
 }
 

@@ -120,14 +120,17 @@ class LiveCell : public api::CellService {
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-               DriftMonitor::Background background = {});
+               CalibrationJobs::Background background);
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
   void store_drift(const api::PoseReport& pose);
   std::unique_ptr<DriftMonitor> make_monitor(const SensorSetup& setup);
-  void store_background(const std::string& calibration_id, const std::vector<float>& depth_m);
-  DriftMonitor::Background stored_background(const std::string& calibration_id);
-  void compare_with_others(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
+  void adopt(const api::CalibrationReport& calibration, Clock::time_point seen_at,
+             const CalibrationJobs::Background& background);
+  CalibrationJobs::Background stored_background(const api::CalibrationReport& calibration);
+  CalibrationJobs::Background review(LiveSensor& sensor, std::span<const View> views,
+                                     CalibrationResult& result);
+  void compare_with_others(LiveSensor& sensor, const BackgroundMap& background, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -144,7 +147,6 @@ class LiveCell : public api::CellService {
   mutable CloudMaker clouds_;
   mutable CloudMerger cloud_merger_;
   mutable ObstacleWatch obstacle_watch_;
-  const SensorComparison comparison_{virtual_cell_};
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   CalibrationJobs jobs_;                                                // its thread uses the others
   Healer healer_;                                                       // last: its thread uses jobs_

@@ -27,16 +27,26 @@ Result<api::MergedCloud> LiveCell::merged_cloud(const api::MergedCloudRequest& r
 std::vector<api::SensorPair> LiveCell::cross_checks() const {
   std::vector<const LiveSensor*> sensors;
   for (const auto& [id, entry] : entries_) sensors.push_back(entry->sensor.get());
-  return comparison_.pairs(sensors);
+  return compare_pairs(sensors);
+}
+
+CalibrationJobs::Background LiveCell::review(LiveSensor& sensor, std::span<const View> views,
+                                             CalibrationResult& result) {
+  if (!estimator_.make_watch) return nullptr;
+  RobotMask robot(virtual_cell_, sensor.camera());
+  auto background = std::make_shared<const BackgroundMap>(
+      learn_background(robot, sensor.camera(), views, *result.T_base_sensor));
+  compare_with_others(sensor, *background, result);
+  return background;
 }
 
 /// A pose that a better one contradicts is served no longer, and does not come back with a restart.
-void LiveCell::compare_with_others(LiveSensor& sensor, std::span<const View> views,
+void LiveCell::compare_with_others(LiveSensor& sensor, const BackgroundMap& background,
                                    CalibrationResult& result) {
   std::vector<LiveSensor*> others;
   for (const auto& [id, entry] : entries_)
     if (entry->sensor.get() != &sensor) others.push_back(entry->sensor.get());
-  comparison_.review(sensor, views, others, result, [this](LiveSensor& weaker, const std::string& reason) {
+  review_against(others, sensor, background, result, [this](LiveSensor& weaker, const std::string& reason) {
     const auto pose = weaker.pose();
     weaker.withhold(reason);
     if (pose.known) store_drift(pose);

@@ -230,9 +230,9 @@ void LiveSensor::tell_of_pose() {
 }
 
 void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
-                          DriftMonitor::Background background) {
+                          std::shared_ptr<const BackgroundMap> background) {
   const std::lock_guard lock(mutex_);
-  if (monitor_) monitor_->set_pose(known.calibration_id, *known.result.T_base_sensor, std::move(background));
+  if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(background));
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;

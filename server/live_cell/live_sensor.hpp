@@ -78,7 +78,7 @@ class LiveSensor {
 
   /// The pose being served. A stored one is unverified until a check agrees. `background`: of the pose.
   void set_pose(api::PoseReport::Known known, const PoseOrigin& origin,
-                DriftMonitor::Background background = {});
+                std::shared_ptr<const BackgroundMap> background = nullptr);
 
   /// Something else speaks against the pose being served: until another one takes over it is not valid,
   /// whatever its checks say.

@@ -56,7 +56,8 @@ void PoseWatch::on_sensor_moved() {
 
 bool PoseWatch::is_check_due(Clock::time_point now) const {
   if (state_ == PoseState::uncalibrated) return false;
-  const bool settled = state_ != PoseState::unverified || doubt_ != Doubt::disagreement;
+  const bool settled =
+      state_ != PoseState::unverified || doubt_ == Doubt::restored || doubt_ == Doubt::sensor_lost;
   return !checked_at_ || now - *checked_at_ >= (settled ? settings_.check_period : settings_.recheck_period);
 }
 
@@ -84,7 +85,7 @@ void PoseWatch::disagree(Clock::time_point now) {
   const bool stands = in_place_at_ && now - *in_place_at_ < kInPlace;
   state_ = lasts && !stands && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
                                                                                   : PoseState::unverified;
-  doubt_ = Doubt::disagreement;
+  doubt_ = stands ? Doubt::robot_off : Doubt::disagreement;
 }
 
 std::string PoseWatch::doubt() const {
@@ -92,14 +93,12 @@ std::string PoseWatch::doubt() const {
   switch (doubt_) {
     case Doubt::sensor_lost:
       return "the sensor was lost and may have been moved; the pose is checked when the sensor is back and "
-             "the "
-             "robot holds still in view";
+             "the robot holds still in view";
     case Doubt::disagreement:
-      if (in_place_at_)
-        return "the sensor stands, but the robot is not where its joints and the pose put it: check joint "
-               "zeros, the "
-               "robot's base and the model; further checks follow at once";
       return "the last check disagreed with the pose; further checks follow at once";
+    case Doubt::robot_off:
+      return "the sensor stands, but the robot is not where its joints and the pose put it: check joint "
+             "zeros, the robot's base and the model; further checks follow at once";
     case Doubt::restored:
       break;
   }
@@ -124,8 +123,7 @@ std::string PoseWatch::reason(Clock::time_point now) const {
     case PoseState::drifted:
       if (moved_)
         return "the sensor has moved: what stands around the robot is no longer where it saw it; calibrate "
-               "again, or "
-               "wait for it where drift.healing does so";
+               "again, or wait for it where drift.healing does so";
       return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
              "stood before it, activate the calibration again";
     case PoseState::calibrated:

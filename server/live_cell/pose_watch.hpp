@@ -66,7 +66,7 @@ class PoseWatch {
 
   PoseWatchSettings settings_;
   api::PoseState state_ = api::PoseState::uncalibrated;
-  enum class Doubt { restored, sensor_lost, disagreement };
+  enum class Doubt { restored, sensor_lost, disagreement, robot_off };
   Doubt doubt_ = Doubt::restored;  // why it is unverified
   std::string objection_;
   int disagreements_ = 0;  // in a row

@@ -27,9 +27,9 @@ class PostureCollector {
   /// The sensor may have been moved: what it has seen so far is dropped.
   void start_over();
 
-  /// The postures seen are enough, once there is one.
-  void settle_for_less() {
-    if (seen_ > 0) settings_.postures = seen_;
+  /// The postures seen are enough, once there are `least`.
+  void settle_for_less(int least) {
+    if (seen_ >= least) settings_.postures = seen_;
   }
 
   bool is_complete() const { return seen() >= settings_.postures; }

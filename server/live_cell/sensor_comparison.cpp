@@ -5,15 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <thread>
 
 #include "core/calibration/check_pose.hpp"
 
 namespace calibrd {
 namespace {
-
-/// A pose just published learns its background with its sensor's next frame.
-constexpr std::chrono::milliseconds kPatience{2000}, kLook{20};
 
 struct Known {
   std::shared_ptr<const BackgroundMap> background;
@@ -25,15 +21,6 @@ std::optional<Known> known_now(const LiveSensor& sensor) {
   // Once more: another pose that took over meanwhile has no background yet.
   if (!known.background || !known.pose.valid || sensor.background() != known.background) return std::nullopt;
   return known;
-}
-
-std::optional<Known> known_soon(const LiveSensor& sensor) {
-  const auto deadline = Clock::now() + kPatience;
-  while (sensor.pose().valid && sensor.newest() && Clock::now() < deadline) {
-    if (auto known = known_now(sensor)) return known;
-    std::this_thread::sleep_for(kLook);
-  }
-  return std::nullopt;
 }
 
 CheckedSensor checked(const Known& known) {
@@ -63,7 +50,7 @@ std::string disagreement(const CrossCheck& check, const std::string& sensor, con
 
 }  // namespace
 
-std::vector<api::SensorPair> SensorComparison::pairs(std::span<const LiveSensor* const> sensors) const {
+std::vector<api::SensorPair> compare_pairs(std::span<const LiveSensor* const> sensors) {
   std::vector<api::SensorPair> pairs;
   for (std::size_t i = 0; i < sensors.size(); ++i)
     for (std::size_t j = i + 1; j < sensors.size(); ++j) {
@@ -76,26 +63,12 @@ std::vector<api::SensorPair> SensorComparison::pairs(std::span<const LiveSensor*
   return pairs;
 }
 
-BackgroundMap SensorComparison::background_of(const CameraModel& camera, std::span<const View> views,
-                                              const Pose& T_base_sensor) const {
-  RobotMask mask(cell_, camera);
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (const View& view : views) masks.push_back(mask.at(view.joint_positions_rad, T_base_sensor));
-  BackgroundMap background(camera);
-  background.learn(views, masks);
-  return background;
-}
-
-void SensorComparison::review(const LiveSensor& sensor, std::span<const View> views,
-                              std::span<LiveSensor* const> others, CalibrationResult& result,
-                              const Distrust& distrust) const {
-  if (result.verdict != Verdict::accepted || !result.T_base_sensor) return;
-  std::optional<BackgroundMap> own;
+void review_against(std::span<LiveSensor* const> others, const LiveSensor& sensor,
+                    const BackgroundMap& background, CalibrationResult& result, const Distrust& distrust) {
   for (LiveSensor* other : others) {
-    const auto known = known_soon(*other);
+    const auto known = known_now(*other);
     if (!known) continue;
-    if (!own) own = background_of(sensor.camera(), views, *result.T_base_sensor);
-    const CheckedSensor mine{*own, *result.T_base_sensor, result.covariance, result.depth_correction};
+    const CheckedSensor mine{background, *result.T_base_sensor, result.covariance, result.depth_correction};
     const CrossCheck check = cross_check(checked(*known), mine);
     if (!check.disagrees()) continue;
     const auto text = disagreement(check, sensor.id(), other->id());

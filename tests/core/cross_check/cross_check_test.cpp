@@ -42,13 +42,11 @@ class TwoSensors : public ::testing::Test {
     static const VirtualCell arm(test_arm());
     RobotMask mask(arm, scene_.camera);
     std::vector<View> views;
-    std::vector<std::vector<std::uint8_t>> masks;
     for (const auto& joints : postures(3)) {
       scene_.seed = seed++;
       views.push_back(render_view(joints, T_base_sensor, scene_));
-      masks.push_back(mask.at(joints, T_base_sensor));
     }
-    background.learn(views, masks);
+    background = learn_background(mask, scene_.camera, views, T_base_sensor);
   }
 
   SceneSettings scene_ = [] {

@@ -91,6 +91,17 @@ TEST_F(BeforeAWall, AloneItIsNoEvidence) {
   EXPECT_FALSE(watch_.is_in_place());
 }
 
+TEST_F(BeforeAWall, TheRobotsWordHoldsForAWhileAsLongAsTheWallIsSeen) {
+  watch_for(1);
+  check(Vector6d::Zero());
+  EXPECT_EQ(watch_for(5), DriftVerdict::in_place);
+  EXPECT_EQ(watch_for(7), DriftVerdict::no_evidence);
+  check(Vector6d::Zero());
+  watch_for(0.1);
+  dark_ = true;
+  EXPECT_EQ(watch_for(3), DriftVerdict::no_evidence);
+}
+
 TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
   watch_for(1);
   check(Vector6d::Zero());

@@ -23,14 +23,12 @@ class Obstacles : public ::testing::Test {
   Obstacles() {
     SceneSettings scene = scene_;
     std::vector<View> views;
-    std::vector<std::vector<std::uint8_t>> masks;
     RobotMask mask(arm_, scene.camera);
     for (const auto& joints : postures(4)) {
       ++scene.seed;
       views.push_back(render_view(joints, T_base_sensor_, scene));
-      masks.push_back(mask.at(joints, T_base_sensor_));
     }
-    background_.learn(views, masks);
+    background_ = learn_background(mask, scene.camera, views, T_base_sensor_);
   }
 
   /// The arm in the posture of that number. `box_m`: of a box that stands with its middle at `middle_base`.
@@ -134,13 +132,9 @@ TEST_F(Obstacles, DistanceIsThatOfTheTrueDepthWhereTheSensorsRangeIsOff) {
   correction_ = {1.003, 0.012, 0, 0, 0};
   scene_.scale = correction_.scale;
   scene_.offset_m = correction_.offset_m;
-  BackgroundMap biased(scene_.camera);
   std::vector<View> views{frame(0), frame(1), frame(2), frame(3)};
   RobotMask mask(arm_, scene_.camera);
-  std::vector<std::vector<std::uint8_t>> masks;
-  for (const View& view : views) masks.push_back(mask.at(view.joint_positions_rad, T_base_sensor_));
-  biased.learn(views, masks);
-  background_ = biased;
+  background_ = learn_background(mask, scene_.camera, views, T_base_sensor_);
   const auto found = find(frame(0, {0.12, 0.2, 0.3}, {0.75, -0.25, 0.15}));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().distance_m, true_nearest().distance_m, 0.005);

@@ -115,6 +115,10 @@ class CellFixture : public ::testing::Test {
         return PoseCheck{true, agrees_.load(), 0.9, 0, 4000};
       };
     };
+    if (watches_)
+      estimator.make_watch = [this](const CameraModel& camera) {
+        return std::make_unique<DriftWatch>(*virtual_cell_, camera, DriftSettings{});
+      };
     return estimator;
   }
 
@@ -214,7 +218,7 @@ class CellFixture : public ::testing::Test {
   std::filesystem::path folder_;
   CameraModel camera_{32, 24, 30, 30, 15.5, 11.5, {0, 0, 0, 0, 0}};
   std::optional<Pose> guess_ = Pose::Identity();
-  bool mirror_ = false;
+  bool mirror_ = false, watches_ = false;
   LiveCellSettings settings_ = [] {
     LiveCellSettings settings;
     settings.watch.check_period = std::chrono::milliseconds(5);

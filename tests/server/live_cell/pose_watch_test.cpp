@@ -181,5 +181,12 @@ TEST_F(Watch, RobotThatDisagreesWhileTheBackgroundStandsIsNoDriftButNoValidPose)
   EXPECT_NE(watch_.reason(at(8s)).find("joint zeros"), std::string::npos);
 }
 
+TEST_F(Watch, BackgroundSeenLongBeforeTheDisagreementSaysNothingOfTheRobot) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_background_in_place(at(1s));
+  watch_.on_check(kDisagrees, at(10s));
+  EXPECT_EQ(watch_.reason(at(10s)).find("joint zeros"), std::string::npos) << watch_.reason(at(10s));
+}
+
 }  // namespace
 }  // namespace calibrd

@@ -91,6 +91,17 @@ TEST(PostureCollector, StartsOverWithoutPosturesAndWithoutFramesOfOne) {
   EXPECT_EQ(collector.take_views().size(), 2U);
 }
 
+TEST(PostureCollector, SettlesForLessButNotForTooLittle) {
+  PostureCollector collector({5});
+  collector.offer(view(0.0));
+  collector.settle_for_less(2);
+  EXPECT_FALSE(collector.is_complete());
+  collector.offer(view(0.5));
+  collector.settle_for_less(2);
+  EXPECT_TRUE(collector.is_complete());
+  EXPECT_EQ(collector.take_views().size(), 2U);
+}
+
 TEST(FrameAverage, PixelThatJumpsIsNotPutBetweenForegroundAndBackground) {
   const std::vector<View> views{view(0, 1000), view(0, 1002), view(0, 1800)};
   const auto average = average_views(views);

@@ -102,7 +102,7 @@ TEST_F(RobotMotionsTest, AStopThatIsBeingMadeShows) {
 }
 
 TEST_F(RobotMotionsTest, TheEndOfTheDaemonStopsItAndNothingStartsAfterwards) {
-  tour();
+  ASSERT_TRUE(tour());
   cell_->request_stop();
   EXPECT_EQ(mover_.stops_, std::vector{MotionError::daemon_ends});
   EXPECT_EQ(refusal_of({"tour", {}, {}}), ApiError::shutting_down);

@@ -54,6 +54,19 @@ TEST_F(StartPose, IsTheConfiguredGuessThenTheLastPose) {
   EXPECT_EQ(start_x(request(2)), kLast);
 }
 
+TEST_F(StartPose, WithoutOneImpatienceWaitsForTheSecondPosture) {
+  guess_.reset();
+  start();
+  auto impatient = request(3);
+  impatient.patience = api::Seconds(0.05);
+  const auto id = cell_->start_calibration(impatient)->id;
+  const auto wanted = Clock::now() + std::chrono::milliseconds(500);
+  watch_until([&] { return job(id).postures_seen == 1 && Clock::now() > wanted; });
+  EXPECT_EQ(job(id).status, api::JobStatus::collecting);
+  move_until_it_ends(id);
+  EXPECT_EQ(job(id).result->views, 2);
+}
+
 TEST_F(StartPose, MayBeALastPoseThatIsNotVerified) {
   calibrate();
   agrees_ = false;

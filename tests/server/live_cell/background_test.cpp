@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+// What a calibration saw around the robot is learnt once, and kept with it.
+#include "tests/server/live_cell/cell_fixture.hpp"
+
+namespace calibrd {
+namespace {
+
+class Background : public CellFixture {
+ protected:
+  Background() {
+    watches_ = true;
+    camera_ = {160, 120, 150, 150, 79.5, 59.5, {0, 0, 0, 0, 0}};  // coarse cells beside the robot, too
+    on_calibrate_ = [](auto views, const auto&) { return accepted(views); };
+  }
+  std::string calibrate_without_activating() {
+    api::CalibrationRequest request;
+    request.sensor_id = "eye";
+    request.postures = 1;
+    request.activate = false;
+    const auto id = cell_->start_calibration(request)->id;
+    let_it_end(id);
+    return id;
+  }
+  bool is_known() {
+    stand(0.5);
+    show();
+    return cell_->drift("eye")->now.has_background;
+  }
+};
+
+TEST_F(Background, OfACurrentCalibrationIsWatchedAtOnceAndStored) {
+  const auto id = calibrate();
+  wait_for([&] { return is_known(); });
+  wait_for([&] { return store_->background(id)->has_value(); });
+  start();
+  agrees_ = false;  // it is the stored one: none is learnt from frames that pass a check
+  wait_for([&] { return is_known(); });
+}
+
+TEST_F(Background, OfACandidateIsStoredAndWatchedOnceItIsActivated) {
+  const auto id = calibrate_without_activating();
+  wait_for([&] { return store_->background(id)->has_value(); });
+  start();
+  agrees_ = false;
+  ASSERT_TRUE(cell_->activate_calibration(id));
+  wait_for([&] { return is_known(); });
+}
+
+TEST_F(Background, OfARejectedCalibrationIsNone) {
+  on_calibrate_ = [](auto, const auto&) { return CalibrationResult(); };
+  const auto id = calibrate();
+  EXPECT_FALSE(store_->background(id)->has_value());
+}
+
+}  // namespace
+}  // namespace calibrd
