@@ -114,6 +114,8 @@ def attempt(job: dict, truth) -> dict:
         line["seconds"] = round(job["finished"] - job["created"], 2)
     if result.get("T_base_sensor"):
         line["mm"], line["mrad"] = (round(e, 2) for e in difference(result["T_base_sensor"], truth))
+        if result["verdict"] == "accepted" and (line["mm"] > WRONG_MM or line["mrad"] > WRONG_MRAD):
+            line["result"] = result  # all there is to find out why
     return line
 
 
