@@ -85,11 +85,13 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     std::span<const std::uint8_t> robot;
     if (!frame.joint_positions_rad.empty()) robot = robot_.at(frame.joint_positions_rad, T_base_sensor_);
     auto observation = matcher_.match(frame.depth, robot, T_base_sensor_.linear());
-    const bool is_far = moved_ && observation.share(CellState::same) < kLeastSame;
-    if ((!observation.has_evidence || is_far) && frames_ % kRealignEvery == 0) realign(robot, observation);
+    if (!observation.has_evidence && frames_ % kRealignEvery == 0) realign(robot, observation);
     if (observation.has_evidence) evidence_s_ = frame_s_;
+    const bool had_moved = moved_;
     follow_loss(observation, frame_s_);
     test(observation);
+    const bool is_far = moved_ && !observation.realigned && observation.share(CellState::same) < kLeastSame;
+    if (is_far && (!had_moved || frames_ % kRealignEvery == 0)) realign(robot, observation);
     follow_offset(observation, frame_s_);
     describe(observation);
     refine(observation, frame_s_);
