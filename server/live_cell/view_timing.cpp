@@ -3,6 +3,7 @@
 #include "server/live_cell/view_timing.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace calibrd {
 namespace {
@@ -16,6 +17,20 @@ double acceleration(const LinkReach& reach, const JointState& a, const JointStat
   const double ab = seconds_between(a, b), bc = seconds_between(b, c);
   return reach.velocity_change_m_s(a.positions_rad, b.positions_rad, c.positions_rad, ab, bc) /
          (0.5 * (ab + bc));
+}
+
+/// How late messages around `after` came, at most: a controller sends them at equal intervals, and stamps are
+/// of their arrival. A late one makes the interval before it long.
+double delay_around_s(const std::deque<JointState>& states, std::deque<JointState>::const_iterator after) {
+  constexpr std::ptrdiff_t kReach = 4;  // messages to each side
+  const auto first = after - std::min(kReach, after - states.begin());
+  const auto last = after + std::min(kReach, states.end() - 1 - after);
+  std::vector<double> intervals_s;
+  for (auto state = first; state != last; ++state)
+    intervals_s.push_back(seconds_between(*state, *std::next(state)));
+  std::ranges::sort(intervals_s);
+  const double usual = intervals_s[intervals_s.size() / 2];
+  return std::max(intervals_s.back() - usual, usual - intervals_s.front());
 }
 
 }  // namespace
@@ -33,7 +48,7 @@ std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach
   if (has_later) bend = std::max(bend, acceleration(reach, *before, *after, *std::next(after)));
   const double cycle_s = seconds_between(*before, *after);
   const double speed = reach.farthest_m(before->positions_rad, after->positions_rad) / cycle_s;
-  return speed * sigma_s + bend * cycle_s * cycle_s / 8;
+  return speed * (sigma_s + delay_around_s(states, after)) + bend * cycle_s * cycle_s / 8;
 }
 
 }  // namespace calibrd

@@ -159,14 +159,15 @@ TEST(ViewGate, StatusThatGoesOnWithoutJointsIsNamed) {
   EXPECT_EQ(judge(history, 1990ms, 2000ms).verdict, FrameVerdict::joints_frozen);
 }
 
-/// The test arm turning at `speed_rad_s` about its first joint, faster and faster by `acceleration`.
-JointHistory turning(double speed_rad_s, double acceleration = 0) {
+/// The test arm turning at `speed_rad_s` about its first joint, faster and faster by `acceleration`; one of
+/// its messages, of 900 ms, comes late by `delay`.
+JointHistory turning(double speed_rad_s, double acceleration = 0, std::chrono::milliseconds delay = 0ms) {
   JointHistory history;
   for (auto t = 0ms; t <= 1000ms; t += 25ms) {
     const double s = std::chrono::duration<double>(t).count();
     auto positions = test::postures(1).front();
     positions[0] += speed_rad_s * s + 0.5 * acceleration * s * s;
-    history.add({positions, {}, 0, at(t)});
+    history.add({positions, {}, 0, at(t == 900ms ? t + delay : t)});
   }
   return history;
 }
@@ -190,6 +191,11 @@ TEST(ViewGate, AMovingRobotsFrameIsAViewWhereItsTimeIsKnownWellEnough) {
   EXPECT_EQ(judge_timed(turning(0.2), 0.0005, false).verdict, FrameVerdict::moving);
   EXPECT_EQ(judge_timed(turning(0.2), 0.005).verdict, FrameVerdict::moving);
   EXPECT_EQ(judge_timed(turning(2.0), 0.0005).verdict, FrameVerdict::moving);
+}
+
+TEST(ViewGate, AMovingRobotsFrameIsNoViewWhereAMessageCameLate) {
+  EXPECT_EQ(judge_timed(turning(0.2, 0, 8ms), 0.0005).verdict, FrameVerdict::moving);
+  EXPECT_GT(*judge_timed(turning(0.2, 0, 8ms), 0.0005).timing_error_m, 0.2 * 0.3 * 0.008);
 }
 
 TEST(ViewGate, FastAccelerationBetweenTwoMessagesIsCounted) {
