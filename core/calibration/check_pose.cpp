@@ -23,6 +23,7 @@ constexpr double kModelTurn_rad = 0.0012;
 constexpr double kMaxShiftSigmas = 4;
 /// Something this much in front of the robot hides it, and says nothing about the sensor's pose.
 constexpr double kInFront_m = 0.05;
+constexpr double kMostHidden = 0.1;  // share of the robot, for a check that is to speak against the pose
 
 }  // namespace
 
@@ -91,6 +92,10 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   check.shift_m = shift.tail<3>().norm();
   check.shift_sigmas = std::sqrt(shift.dot(covariance.ldlt().solve(shift)));
   check.agrees = check.shift_sigmas < kMaxShiftSigmas;  // false when it is not a number
+  // At the rim of what hides part of the robot depths are of neither: that may only speak for the pose.
+  const auto hidden = static_cast<double>(check.hidden_pixels);
+  if (!check.agrees && hidden > kMostHidden * (hidden + static_cast<double>(check.robot_pixels)))
+    check.enough_evidence = false;
   return check;
 }
 

@@ -74,6 +74,8 @@ bool DriftWatch::robot_stands_since(double since_s) const {
   return check_ && check_->agrees && check_s_ > since_s && frame_s_ - check_s_ < kCheck_s;
 }
 
+bool DriftWatch::is_robot_off() const { return check_ && !check_->agrees && frame_s_ - check_s_ < kCheck_s; }
+
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
 bool DriftWatch::is_robots_shift_possible() const {
   if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;

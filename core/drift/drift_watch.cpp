@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLost_s = 1;       // a background that is nowhere for so long: the sensor looks elsewhere
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
+constexpr double kLeastLeft = 0.1;  // share of it that is where it was
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
 /// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
@@ -163,9 +164,12 @@ void DriftWatch::follow_offset(const BackgroundObservation& observation, double 
   bias_changed_ = bias_changed_ || now_s - offset_over_s_ >= kBias_s;
 }
 
-/// Nothing of the background is where any nearby place of the sensor would see it.
+/// Nothing of the background is where any nearby place of the sensor would see it, and that is not because
+/// something stands in front: much lies farther, or the robot is elsewhere, too.
 void DriftWatch::follow_loss(const BackgroundObservation& observation, double now_s) {
-  const bool lost = !observation.has_evidence && observation.share(CellState::farther) >= kLeastGone;
+  const bool elsewhere = observation.share(CellState::farther) >= kLeastGone ||
+                         (observation.share(CellState::same) < kLeastLeft && is_robot_off());
+  const bool lost = !observation.has_evidence && elsewhere;
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;
   if (!lost) return;
   if (lost_since_s_ < 0) lost_since_s_ = now_s;

@@ -81,6 +81,7 @@ class DriftWatch {
   void follow_posture(double sigmas);
   bool robot_denies_the_shift(double now_s) const;
   bool robot_stands_since(double since_s) const;
+  bool is_robot_off() const;
   bool is_robots_shift_possible() const;
   bool is_known_to_stand() const;
   bool is_seen() const;

@@ -95,6 +95,19 @@ TEST(CheckPose, SomebodyInFrontOfTheRobotIsNoDisagreement) {
   }
 }
 
+TEST(CheckPose, ARobotThatIsPartlyHiddenSpeaksAgainstNoPose) {
+  View view = render_views(1)[0];
+  VirtualCell cell(test_arm());
+  PoseChecker checker(cell, ideal_kinect2());
+  const Pose off = Eigen::Translation3d(0, 0.008, 0) * true_T_base_sensor();
+  const PoseCheck whole = checker.check(view, off, {});
+  EXPECT_TRUE(whole.enough_evidence && !whole.agrees);
+  for (int y = 0; y < view.depth.height; ++y)
+    for (int x = 0; x < view.depth.width / 2; ++x) view.depth.raw[view.depth.index(x, y)] = 600;
+  const PoseCheck half = checker.check(view, off, {});
+  EXPECT_TRUE(half.agrees || !half.enough_evidence) << half.shift_sigmas;
+}
+
 TEST(CheckPose, TakesTheKnownRangeOffsetIntoAccount) {
   SceneSettings scene = cluttered();
   scene.offset_m = 0.03;

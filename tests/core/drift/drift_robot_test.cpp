@@ -58,6 +58,16 @@ TEST_F(RobotsWord, ARobotThatMovedAlongConfirms) {
   EXPECT_EQ(watch_for(1, [&] { check(moved_); }), DriftVerdict::sensor_moved);
 }
 
+TEST_F(RobotsWord, WhereNothingIsInItsPlaceAndTheRobotNeitherTheSensorLooksElsewhere) {
+  watch_for(1);
+  room_.hidden_share = 1;
+  EXPECT_NE(watch_for(3), DriftVerdict::sensor_moved);  // somebody may stand before it
+  PoseCheck elsewhere;
+  elsewhere.enough_evidence = true;
+  watch_for(1.5, [&] { watch_.add_check(elsewhere, now_s_); });
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
 TEST_F(RobotsWord, WithoutBackgroundARobotThatIsOffMeansTheSensor) {
   watch_.set_pose(true_T_base_sensor());
   for (int posture = 0; posture < 3; ++posture) {
