@@ -68,7 +68,8 @@ Eigen::Vector3d PoseChecker::compare(const View& view, const Pose& T_base_sensor
   return T_base_sensor * (middle_sensor / static_cast<double>(residuals.size()));
 }
 
-PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
+PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
+                             const Matrix6d& pose_covariance) {
   PoseCheck check;
   const Eigen::Vector3d middle_base = compare(view, T_base_sensor, correction, check);
   if (check.robot_pixels < kMinPixels) return check;
@@ -83,7 +84,7 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   Vector6d allowed;
   allowed << Eigen::Vector3d::Constant(kModelTurn_rad * kModelTurn_rad),
       Eigen::Vector3d::Constant(kModelShift_m * kModelShift_m);
-  Matrix6d covariance = move * tracked->covariance * move.transpose();
+  Matrix6d covariance = move * (tracked->covariance + pose_covariance) * move.transpose();
   covariance.diagonal() += scatter * scatter * allowed;
   check.turn_shift = shift;
   check.turn_shift_covariance = covariance;

@@ -17,10 +17,11 @@ struct PoseCheck {
   std::size_t hidden_pixels = 0;  ///< of the robot, by something well in front of it
   /// How far this view alone would move the robot's visible surface in the sensor's sight (m, rad) ...
   double shift_m = 0, turn_rad = 0;
-  /// ... against what noise, model and joint zeros explain, in standard deviations of 6 degrees of freedom.
+  /// ... against what noise, model, joint zeros and the pose's own uncertainty explain, in standard
+  /// deviations of 6 degrees of freedom.
   double shift_sigmas = 0;
   /// The same in full: turn (rad) and shift (m) of the point `middle_base` (m), base axes, if it is the
-  /// sensor that moved, and the covariance that noise, model and joint zeros explain.
+  /// sensor that moved, and the covariance that all these explain.
   Vector6d turn_shift = Vector6d::Zero();
   Matrix6d turn_shift_covariance = Matrix6d::Identity();
   Eigen::Vector3d middle_base = Eigen::Vector3d::Zero();
@@ -38,7 +39,9 @@ class PoseChecker {
   /// The robot of `cell` must outlive it.
   PoseChecker(const VirtualCell& cell, const CameraModel& camera);
 
-  PoseCheck check(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction);
+  /// `covariance`: of the pose, see perturbed(); zero: it is exact.
+  PoseCheck check(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
+                  const Matrix6d& covariance = Matrix6d::Zero());
 
  private:
   /// Where the robot's visible surface lies on average, base frame.

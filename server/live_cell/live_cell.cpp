@@ -227,8 +227,9 @@ Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
   };
   estimator.make_check = [&cell](const CameraModel& camera) -> CheckFunction {
     return [checker = std::make_shared<PoseChecker>(cell, camera)](
-               const View& view, const Pose& T_base_sensor, const DepthCorrection& correction) {
-      return checker->check(view, T_base_sensor, correction);
+               const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
+               const Matrix6d& covariance) {
+      return checker->check(view, T_base_sensor, correction, covariance);
     };
   };
   estimator.make_time_offset = [&cell](const CameraModel& camera) {

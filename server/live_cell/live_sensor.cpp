@@ -200,10 +200,11 @@ void LiveSensor::check(const Sighting& sighting) {
   checked_at_ = Clock::now();
   const auto number = pose_number_;
   const auto pose = *known_->result.T_base_sensor;
+  const auto covariance = known_->result.covariance;
   auto correction = known_->result.depth_correction;
   if (monitor_) correction.offset_m += monitor_->depth_offset_change_m();
   lock.unlock();
-  const auto checked = check_(sighting.view, pose, correction);
+  const auto checked = check_(sighting.view, pose, correction, covariance);
   lock.lock();
   if (number != pose_number_) return;
   if (monitor_) monitor_->add_check(sighting.view, checked);

@@ -24,7 +24,8 @@
 namespace calibrd {
 
 /// Compares a view with what a pose predicts. Called on the sensor's thread only.
-using CheckFunction = std::function<PoseCheck(const View&, const Pose&, const DepthCorrection&)>;
+using CheckFunction =
+    std::function<PoseCheck(const View&, const Pose&, const DepthCorrection&, const Matrix6d& covariance)>;
 
 /// What speaks for a pose, or against it, when it takes over.
 struct PoseOrigin {

@@ -28,6 +28,7 @@ WatchedSensor::WatchedSensor(const Scene& scene, const CalibrationResult& calibr
       watch_(cell_, scene.camera, settings),
       checker_(cell_, scene.camera),
       T_base_sensor_(*calibration.T_base_sensor),
+      covariance_(calibration.covariance),
       correction_(calibration.depth_correction) {
   learn_again(scene.views);
 }
@@ -47,7 +48,7 @@ DriftVerdict WatchedSensor::see(const RunningCell::Frame& frame) {
   checked_s_ = now_s;
   DepthCorrection correction = correction_;
   correction.offset_m += watch_.report().depth_offset_change_m;
-  last_check_ = checker_.check(frame.view, T_base_sensor_, correction);
+  last_check_ = checker_.check(frame.view, T_base_sensor_, correction, covariance_);
   watch_.add_check(last_check_, now_s);
   ++checks_;
   return watch_.report().verdict;

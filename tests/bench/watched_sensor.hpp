@@ -33,6 +33,7 @@ class WatchedSensor {
   DriftWatch watch_;
   PoseChecker checker_;
   Pose T_base_sensor_;
+  Matrix6d covariance_;
   DepthCorrection correction_;
   double checked_s_ = -1e9;
   PoseCheck last_check_;

@@ -95,6 +95,19 @@ TEST(CheckPose, SomebodyInFrontOfTheRobotIsNoDisagreement) {
   }
 }
 
+TEST(CheckPose, APoseThatIsKnownBadlyIsNotTakenForExact) {
+  const View view = render_views(1)[0];
+  VirtualCell cell(test_arm());
+  PoseChecker checker(cell, ideal_kinect2());
+  const Pose off = Eigen::Translation3d(0, 0.007, 0) * true_T_base_sensor();
+  EXPECT_FALSE(checker.check(view, off, {}).agrees);
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().tail<3>().setConstant(std::pow(0.002, 2));
+  EXPECT_TRUE(checker.check(view, off, {}, covariance).agrees);
+  const Pose far = Eigen::Translation3d(0, 0.015, 0) * true_T_base_sensor();
+  EXPECT_FALSE(checker.check(view, far, {}, covariance).agrees);
+}
+
 TEST(CheckPose, ARobotThatIsPartlyHiddenSpeaksAgainstNoPose) {
   View view = render_views(1)[0];
   VirtualCell cell(test_arm());

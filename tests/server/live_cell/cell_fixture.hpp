@@ -110,7 +110,7 @@ class CellFixture : public ::testing::Test {
       return on_calibrate_(views, settings);
     };
     estimator.make_check = [this](const CameraModel&) -> CheckFunction {
-      return [this](const View&, const Pose&, const DepthCorrection&) {
+      return [this](const View&, const Pose&, const DepthCorrection&, const Matrix6d&) {
         ++checks_;
         return PoseCheck{true, agrees_.load(), 0.9, 0, 4000};
       };
