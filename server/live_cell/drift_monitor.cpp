@@ -14,6 +14,8 @@ constexpr double kSamplePeriod_s = 1;
 /// Frames that passed a check, to learn a background from, a second apart: of two postures, for one shows
 /// nothing behind the robot; of one where the robot keeps standing.
 constexpr std::size_t kFramesToLearn = 3, kMostFramesToLearn = 10;
+/// Without a frame for so long nothing is known of now.
+constexpr api::Seconds kSilent{2};
 constexpr double kBetweenFrames_s = 1, kOtherPosture_rad = 0.1;
 
 Clock::time_point time_of(double stamp_s) {
@@ -135,6 +137,7 @@ api::DriftReport DriftMonitor::report() const {
   report.watched = has_pose_;
   report.now = newest_;
   if (has_pose_ && stamp_ != Clock::time_point()) report.age = now - stamp_;
+  if (report.age && *report.age > kSilent) report.now.verdict = DriftVerdict::no_evidence;
   report.series.assign(series_.begin(), series_.end());
   report.events.assign(events_.begin(), events_.end());
   return report;

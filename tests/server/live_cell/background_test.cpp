@@ -47,6 +47,13 @@ TEST_F(Background, OfACandidateIsStoredAndWatchedOnceItIsActivated) {
   wait_for([&] { return is_known(); });
 }
 
+TEST_F(Background, WithoutFramesNothingIsKnownOfNow) {
+  calibrate();
+  const auto verdict = [&] { return cell_->drift("eye")->now.verdict; };
+  repeat_until([&] { is_known(); }, [&] { return verdict() == DriftVerdict::in_place; });
+  wait_for([&] { return verdict() == DriftVerdict::no_evidence; });
+}
+
 TEST_F(Background, OfARejectedCalibrationIsNone) {
   on_calibrate_ = [](auto, const auto&) { return CalibrationResult(); };
   const auto id = calibrate();
