@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/drift/background_align.hpp"
-
 namespace calibrd {
 namespace {
 
@@ -108,13 +106,21 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
   return report_;
 }
 
+/// An alignment that leaves a direction open may slide along it as far as it likes, and is no evidence.
+bool DriftWatch::is_pinned(const BackgroundAlignment& found) const {
+  const Matrix6d move = shift_of_point(map_.middle_sensor());
+  const Matrix6d covariance = move * found.covariance * move.transpose();
+  return worst_sigma(covariance.topLeftCorner<3, 3>()) < kSeenWithin_rad &&
+         worst_sigma(covariance.bottomRightCorner<3, 3>()) < kSeenWithin_m;
+}
+
 /// The background is not where it was, pixel by pixel: perhaps the sensor sees it from elsewhere.
 void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation) {
   if (observation.share(CellState::dark) > 0.8) return;
   std::optional<BackgroundAlignment> found;
   if (T_learnt_now_) found = align_background(map_, matcher_.depth_m(), {}, *T_learnt_now_);
   if (!found) found = align_background(map_, matcher_.depth_m(), robot, Pose::Identity());
-  if (!found) return T_learnt_now_.reset();
+  if (!found || !is_pinned(*found)) return T_learnt_now_.reset();
   T_learnt_now_ = found->T_learnt_now;
   const Matrix6d turn = turn_of_axes(T_base_sensor_.linear());
   observation.has_evidence = observation.realigned = true;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/calibration/check_pose.hpp"
+#include "core/drift/background_align.hpp"
 #include "core/drift/background_match.hpp"
 #include "core/drift/drift_report.hpp"
 #include "core/drift/scene_change.hpp"
@@ -65,6 +66,7 @@ class DriftWatch {
 
  private:
   void start_over();
+  bool is_pinned(const BackgroundAlignment& found) const;
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
   void follow_offset(const BackgroundObservation& observation, double now_s);

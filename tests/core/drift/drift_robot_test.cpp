@@ -125,6 +125,15 @@ TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
 }
 
+TEST_F(BeforeAWall, WhatSlidesAlongItIsNoEvidenceOfAMove) {
+  watch_for(1);
+  room_.hidden_share = 0.85;
+  double most = 0;
+  watch_for(10, [&] { most = std::max(most, watch_.report().statistic); });
+  EXPECT_NE(verdict(), DriftVerdict::sensor_moved);
+  EXPECT_LT(most, 0.2 * watch_.report().threshold);
+}
+
 TEST_F(BeforeAWall, ATurnIsSeenByTheWallAlone) {
   watch_for(1);
   moved_.head<3>() = 0.004 * true_T_base_sensor().linear().col(0);
