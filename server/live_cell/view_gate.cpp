@@ -137,6 +137,10 @@ FrameVerdict ViewGate::judge_motion(const JointHistory& joints, FrameDecision& d
     decision.timing_error_m = 0;
     return FrameVerdict::usable;
   }
+  if (reach_ && late_error_m(joints, *reach_, decision.exposed) > settings_.largest_late_error_m) {
+    decision.positions_rad.reset();  // old joints under a new stamp
+    return FrameVerdict::moving;
+  }
   if (offset_ && reach_)
     decision.timing_error_m = calibrd::timing_error_m(joints, *reach_, decision.exposed, offset_->sigma_s);
   const bool known = decision.timing_error_m && *decision.timing_error_m <= settings_.largest_timing_error_m;

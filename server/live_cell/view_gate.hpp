@@ -43,6 +43,8 @@ struct ViewGateSettings {
   /// ... when no point of it is farther than this from where the joints put it: below what one view's noise
   /// does to a pose, and a time that is off by the same in every view is not averaged away.
   double largest_timing_error_m = 0.3e-3;
+  /// Where messages that came late leave the robot less certain than this, its joints are not known at all.
+  double largest_late_error_m = 0.01;
 };
 
 struct FrameDecision {

@@ -51,4 +51,14 @@ std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach
   return speed * (sigma_s + delay_around_s(states, after)) + bend * cycle_s * cycle_s / 8;
 }
 
+double late_error_m(const JointHistory& joints, const LinkReach& reach, Clock::time_point exposed) {
+  const auto& states = joints.states();
+  const auto after = std::ranges::lower_bound(states, exposed, {}, &JointState::stamp);
+  if (after == states.begin() || after == states.end()) return 0;
+  const auto before = std::prev(after);
+  const double speed =
+      reach.farthest_m(before->positions_rad, after->positions_rad) / seconds_between(*before, *after);
+  return speed * delay_around_s(states, after);
+}
+
 }  // namespace calibrd

@@ -21,4 +21,7 @@ struct AppliedOffset {
 std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach& reach,
                                      Clock::time_point exposed, double sigma_s);
 
+/// How far (m) the joints around may put any point of the robot wrong only because messages came late: v d.
+double late_error_m(const JointHistory& joints, const LinkReach& reach, Clock::time_point exposed);
+
 }  // namespace calibrd

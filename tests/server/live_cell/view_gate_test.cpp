@@ -198,6 +198,13 @@ TEST(ViewGate, AMovingRobotsFrameIsNoViewWhereAMessageCameLate) {
   EXPECT_GT(*judge_timed(turning(0.2, 0, 8ms), 0.0005).timing_error_m, 0.2 * 0.3 * 0.008);
 }
 
+TEST(ViewGate, JointsOfAMovingRobotThatCameMuchTooLateAreNotKnown) {
+  const auto late = judge_timed(turning(1.0, 0, 60ms), 0.0005), in_time = judge_timed(turning(1.0), 0.0005);
+  EXPECT_EQ(late.verdict, FrameVerdict::moving);
+  EXPECT_FALSE(late.positions_rad);
+  EXPECT_TRUE(in_time.positions_rad);
+}
+
 TEST(ViewGate, FastAccelerationBetweenTwoMessagesIsCounted) {
   const auto steady = judge_timed(turning(0.2), 1e-6), jerky = judge_timed(turning(0.2, 20), 1e-6);
   ASSERT_TRUE(steady.timing_error_m && jerky.timing_error_m);
