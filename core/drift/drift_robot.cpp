@@ -10,6 +10,7 @@
 namespace calibrd {
 namespace {
 
+constexpr double kOff_s = 0.5;  // one comparison alone says nothing of a second
 constexpr double kCheck_s = 2;  // a comparison with the robot is of now for so long
 /// CUSUM of how far off the robot looks, posture by posture: a comparison of a good model stays below 2.2
 /// standard deviations of what noise, model and joint zeros explain, in nearly every posture.
@@ -74,7 +75,7 @@ bool DriftWatch::robot_stands_since(double since_s) const {
   return check_ && check_->agrees && check_s_ > since_s && frame_s_ - check_s_ < kCheck_s;
 }
 
-bool DriftWatch::is_robot_off() const { return check_ && !check_->agrees && frame_s_ - check_s_ < kCheck_s; }
+bool DriftWatch::is_robot_off() const { return check_ && !check_->agrees && frame_s_ - check_s_ < kOff_s; }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
 bool DriftWatch::is_robots_shift_possible() const {

@@ -9,6 +9,8 @@
 namespace calibrd {
 namespace {
 
+constexpr double kGap_s = 1.5;  // between frames: the sensor was away
+constexpr int kQuietFrames = 10;
 constexpr double kLost_s = 1;       // a background that is nowhere for so long: the sensor looks elsewhere
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr double kLeastLeft = 0.1;  // share of it that is where it was
@@ -65,6 +67,7 @@ void DriftWatch::start_over() {
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = false;
   robot_statistic_ = before_posture_ = 0;
   posture_.clear();
+  quiet_frames_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
   evidence_s_ = pinned_s_ = in_front_s_ = check_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
@@ -74,6 +77,7 @@ void DriftWatch::start_over() {
 }
 
 const DriftReport& DriftWatch::add_frame(const View& frame) {
+  if (frame.stamp_s - frame_s_ > kGap_s) on_gap();
   frame_s_ = frame.stamp_s;
   if (!frame.joint_positions_rad.empty()) joints_ = frame.joint_positions_rad;
   if (learnt_s_ < 0) learnt_s_ = frame_s_;
@@ -129,7 +133,7 @@ void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservat
 }
 
 void DriftWatch::test(const BackgroundObservation& observation) {
-  if (!observation.has_evidence) return;
+  if (!observation.has_evidence) return on_gap();
   const Matrix6d move = shift_of_point(T_base_sensor_.linear() * map_.middle_sensor());
   innovation_ = Innovation{move * observation.shift, move * observation.covariance * move.transpose(),
                            observation.common_share};
@@ -137,12 +141,24 @@ void DriftWatch::test(const BackgroundObservation& observation) {
   if (worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
       worst_sigma(innovation_->covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m)
     pinned_s_ = frame_s_;
+  count_quiet();
   last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
   if (!test_.is_alarmed() || moved_) return;
   if (robot_denies_the_shift(frame_s_)) return on_denial();
   moved_ = true;
+}
+
+/// Frames on end that show the background where it was. The sequential test needs some frames to find a move,
+/// and must not be taken for quiet before.
+void DriftWatch::count_quiet() {
+  const double sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
+  const bool is_quiet =
+      innovation_->turn_shift.head<3>().norm() < settings_.shift.tolerance_rad + 3 * sigma_rad &&
+      innovation_->turn_shift.tail<3>().norm() < settings_.shift.tolerance_m + 3 * sigma_m;
+  quiet_frames_ = is_quiet ? quiet_frames_ + 1 : 0;
 }
 
 /// What stands around has moved as one; the robot says that the sensor has not.
@@ -178,7 +194,8 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
   const bool lost = !observation.has_evidence && elsewhere;
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;
   if (!lost) return;
-  if (lost_since_s_ < 0) lost_since_s_ = now_s;
+  if (lost_since_s_ < 0 || now_s - lost_s_ > kGap_s) lost_since_s_ = now_s;
+  lost_s_ = now_s;
   if (now_s - lost_since_s_ < kLost_s) return;
   if (!robot_stands_since(lost_since_s_))
     moved_ = true;
@@ -204,7 +221,8 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
 }
 
 bool DriftWatch::is_in_place() const {
-  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful();
+  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful() &&
+         quiet_frames_ >= kQuietFrames;
 }
 
 /// Something has said just now that the sensor stands, in every direction.

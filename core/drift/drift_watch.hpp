@@ -51,8 +51,10 @@ class DriftWatch {
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
   bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
-  /// The background is in view, where it was, and shows every direction.
+  /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
+  /// The sensor was away: what was seen before says nothing of where it is now.
+  void on_gap() { quiet_frames_ = 0; }
 
   const BackgroundMap& background() const { return map_; }
   const BackgroundMatcher& matcher() const { return matcher_; }
@@ -69,6 +71,7 @@ class DriftWatch {
   bool is_pinned(const BackgroundAlignment& found) const;
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
+  void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
   static std::vector<std::size_t> tips_of(const RobotModel& model);
@@ -106,8 +109,9 @@ class DriftWatch {
   std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
   bool moved_ = false, is_refined_ = false;
-  int frames_ = 0;
-  double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, absorbed_s_ = 0, learnt_s_ = -1;
+  int frames_ = 0, quiet_frames_ = 0;
+  double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, lost_s_ = -1e9, absorbed_s_ = 0,
+         learnt_s_ = -1;
   double pinned_s_ = -1e9;                          // last time the background showed every direction
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
   double in_front_s_ = -1e9;                        // last time something was

@@ -14,6 +14,8 @@ constexpr double kSamplePeriod_s = 1;
 /// Frames that passed a check, to learn a background from, a second apart: of two postures, for one shows
 /// nothing behind the robot; of one where the robot keeps standing.
 constexpr std::size_t kFramesToLearn = 3, kMostFramesToLearn = 10;
+/// A sensor that has moved by 3 mm or 3 mrad shows within so many (docs/figures.md).
+constexpr int kFramesToShow = 15;
 /// Without a frame for so long nothing is known of now.
 constexpr api::Seconds kSilent{2};
 constexpr double kBetweenFrames_s = 1, kOtherPosture_rad = 0.1;
@@ -32,6 +34,20 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   newest_ = {};
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
   in_place_ = wants_check_ = false;
+  frames_seen_ = 0;
+}
+
+void DriftMonitor::on_sensor_lost() {
+  passed_.clear();
+  watch_->on_gap();
+  const std::lock_guard lock(mutex_);
+  in_place_ = false;
+  frames_seen_ = 0;
+}
+
+bool DriftMonitor::has_looked() const {
+  const std::lock_guard lock(mutex_);
+  return !background_ || frames_seen_ >= kFramesToShow;
 }
 
 void DriftMonitor::take_order() {
@@ -56,6 +72,7 @@ void DriftMonitor::add_frame(const View& frame) {
   const std::lock_guard lock(mutex_);
   if (order_) return;  // a pose that came meanwhile: this was of the last one
   note(report, frame.stamp_s);
+  ++frames_seen_;
   in_place_ = watch_->is_in_place();
   wants_check_ = watch_->wants_check();
   stamp_ = time_of(frame.stamp_s);

@@ -32,6 +32,11 @@ class DriftMonitor {
   /// The background is known, in view, and where it was.
   bool is_in_place() const;
   bool wants_check() const;
+  /// Enough frames were seen since the pose was set, or the sensor was back, for a moved sensor to show; also
+  /// while no background is known that could tell. Before, a check against the robot proves too little.
+  bool has_looked() const;
+  /// The sensor was away and may have been moved. On the sensor's thread.
+  void on_sensor_lost();
   /// How much more the range reads than when the background was learnt, m.
   double depth_offset_change_m() const;
   /// Where a sensor that has moved is now, as far as the background tells.
@@ -60,6 +65,7 @@ class DriftMonitor {
   DriftReport newest_;
   std::shared_ptr<const BackgroundMap> background_;
   bool in_place_ = false, wants_check_ = false;
+  int frames_seen_ = 0;  // since the pose was set, or the sensor lost
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it
   std::deque<api::DriftEvent> events_;

@@ -149,6 +149,7 @@ void LiveSensor::notice_loss(const SensorHealth& health) {
     lost_at_ = Clock::now();
     watch_.on_sensor_lost();
   }
+  if (monitor_) monitor_->on_sensor_lost();
   for (const auto& task : open_tasks()) task->start_over();
 }
 
@@ -171,7 +172,10 @@ void LiveSensor::watch(const Sighting& sighting) {
   const std::lock_guard lock(mutex_);  // a pose that is set now resets what the monitor says
   if (sighting.stamp <= lost_at_) return;
   const bool was_plausible = watch_.is_plausible();
-  if (monitor_->verdict() == DriftVerdict::sensor_moved) watch_.on_sensor_moved();
+  const bool has_moved = monitor_->verdict() == DriftVerdict::sensor_moved;
+  if (has_moved && !has_moved_) moved_at_ = Clock::now();
+  has_moved_ = has_moved;
+  if (has_moved) watch_.on_sensor_moved();
   if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
   if (was_plausible && !watch_.is_plausible())
     evidence_.reset();  // it was found where the sensor stood before
@@ -186,6 +190,10 @@ void LiveSensor::notice_move() {
     if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
   }
   resting_at_ = seen;
+  {
+    const std::lock_guard lock(mutex_);
+    moved_at_ = Clock::now();
+  }
   for (const auto& task : open_tasks()) task->start_over();
 }
 
@@ -197,6 +205,7 @@ bool LiveSensor::is_check_due(Clock::time_point now) const {
 void LiveSensor::check(const Sighting& sighting) {
   std::unique_lock lock(mutex_);
   if (!known_ || sighting.stamp <= lost_at_ || !is_check_due(Clock::now())) return;
+  if (monitor_ && !monitor_->has_looked()) return;
   checked_at_ = Clock::now();
   const auto number = pose_number_;
   const auto pose = *known_->result.T_base_sensor;
@@ -245,7 +254,8 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
     watch_.set_fresh(*origin.seen_at);
   else
     watch_.set_stored();
-  if (origin.seen_at && *origin.seen_at <= lost_at_) watch_.on_sensor_lost();
+  // What was found before the sensor was lost, or moved once more, is not known to hold now.
+  if (origin.seen_at && *origin.seen_at <= std::max(lost_at_, moved_at_)) watch_.on_sensor_lost();
 }
 
 void LiveSensor::withhold(const std::string& objection) {

@@ -156,6 +156,8 @@ class LiveSensor {
   std::optional<api::PoseReport::Known> known_;
   std::optional<PoseEvidence> evidence_;
   Clock::time_point checked_at_;
+  Clock::time_point moved_at_;     // when it was last found to have moved
+  bool has_moved_ = false;         // by the monitor's last word
   Clock::time_point lost_at_;      // the last moment the source was away: frames before it prove nothing now
   std::uint64_t pose_number_ = 0;  // counts set_pose()
   struct Told {

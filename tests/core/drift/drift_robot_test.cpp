@@ -68,6 +68,18 @@ TEST_F(RobotsWord, WhereNothingIsInItsPlaceAndTheRobotNeitherTheSensorLooksElsew
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
 }
 
+TEST_F(RobotsWord, MomentsOfLookingElsewhereDoNotAddUp) {
+  const auto room = room_.blocks;
+  for (int moment = 0; moment < 3; ++moment) {
+    for (Block& block : room_.blocks) block.middle *= 1.5;  // all lies farther
+    room_.hidden_share = 0;
+    EXPECT_NE(watch_for(0.2), DriftVerdict::sensor_moved) << moment;
+    room_.blocks = room;
+    room_.hidden_share = 1;
+    EXPECT_NE(watch_for(10), DriftVerdict::sensor_moved) << moment;
+  }
+}
+
 TEST_F(RobotsWord, WithoutBackgroundARobotThatIsOffMeansTheSensor) {
   watch_.set_pose(true_T_base_sensor());
   for (int posture = 0; posture < 3; ++posture) {

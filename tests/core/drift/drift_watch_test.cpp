@@ -63,6 +63,22 @@ TEST_F(DriftWatchTest, AKnockedSensorThatStandsIsSeenInOnePlace) {
   });
 }
 
+TEST_F(DriftWatchTest, ASensorThatWasAwayIsInPlaceOnlyOnceSomeFramesSaySo) {
+  for (const double by_m : {0.0, 0.02, -0.02, 0.004, -0.004}) {
+    learn();
+    moved_.setZero();
+    watch_for(2);
+    ASSERT_TRUE(watch_.is_in_place());
+    now_s_ += 60;
+    moved_ = shifted(by_m, 0, 0);
+    int vouched = 0;
+    watch_for(
+        1, [&] { vouched += watch_.is_in_place() && watch_.report().verdict != DriftVerdict::no_evidence; });
+    EXPECT_EQ(watch_.is_in_place(), by_m == 0) << by_m;
+    EXPECT_LE(vouched, by_m == 0 ? 30 : 1) << by_m;  // before the first of these frames it still was
+  }
+}
+
 TEST_F(DriftWatchTest, ASlowKnockIsFoundToo) {
   watch_for(1);
   EXPECT_EQ(watch_for(2, [&] { moved_[3] += 0.004 / 60; }), DriftVerdict::sensor_moved);

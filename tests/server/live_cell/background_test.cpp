@@ -54,6 +54,16 @@ TEST_F(Background, WithoutFramesNothingIsKnownOfNow) {
   wait_for([&] { return verdict() == DriftVerdict::no_evidence; });
 }
 
+TEST_F(Background, IsAskedBeforeTheRobotOnceTheDaemonIsBack) {
+  const auto id = calibrate();
+  wait_for([&] { return store_->background(id)->has_value(); });
+  start();
+  checks_ = 0;
+  const auto frames = frames_sent_;
+  watch_until([&] { return checks_ > 0; });
+  EXPECT_GE(frames_sent_ - frames, 15U);
+}
+
 TEST_F(Background, OfARejectedCalibrationIsNone) {
   on_calibrate_ = [](auto, const auto&) { return CalibrationResult(); };
   const auto id = calibrate();
