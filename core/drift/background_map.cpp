@@ -17,7 +17,7 @@ constexpr float kSameSurface_m = 0.025F;
 /// Neighbours of a cell may lie this far off its plane, as a share of the depth and in m, or it is an edge.
 constexpr double kOffPlane = 0.004, kLeastOffPlane_m = 0.004;
 constexpr double kMinCosine = 0.2;
-constexpr int kPlaneReach = 2;  // cells to each side that a plane is fitted to
+constexpr int kReach = 2;   // cells to each side that a plane is fitted to
 constexpr int kMargin = 2;  // cells around the robot that may be robot: flying pixels, joints a moment off
 
 /// Mean and size of the largest group of values within kSameSurface_m; 0 when it is no majority. Sorts
@@ -112,7 +112,6 @@ void BackgroundMap::fit_planes() {
 
 /// On a plane the inverse depth is linear in the viewing direction: 1/z = m · d.
 void BackgroundMap::fit_plane(int x, int y) {
-  constexpr int kReach = kPlaneReach;
   if (x < kReach || y < kReach || x + kReach >= grid_.width || y + kReach >= grid_.height) return;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();

@@ -213,9 +213,9 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
   report_.nearer = observation.share(CellState::nearer);
   report_.farther = observation.share(CellState::farther);
   report_.dark = observation.share(CellState::dark);
-  const bool is_pinned = report_.shift_sigma_m < kSeenWithin_m && report_.turn_sigma_rad < kSeenWithin_rad;
+  const bool is_known = report_.shift_sigma_m < kSeenWithin_m && report_.turn_sigma_rad < kSeenWithin_rad;
   const bool is_fit = observation.realigned || report_.same >= kLeastSame;
-  if (!moved_ || !observation.has_evidence || !is_pinned || !is_fit) return;
+  if (!moved_ || !observation.has_evidence || !is_known || !is_fit) return;
   report_.T_base_sensor_seen =
       observation.realigned ? T_base_sensor_ * *T_learnt_now_ : perturbed(T_base_sensor_, observation.shift);
 }

@@ -19,6 +19,11 @@ double acceleration(const LinkReach& reach, const JointState& a, const JointStat
          (0.5 * (ab + bc));
 }
 
+/// Of the fastest point, m/s.
+double speed_between(const LinkReach& reach, const JointState& a, const JointState& b) {
+  return reach.farthest_m(a.positions_rad, b.positions_rad) / seconds_between(a, b);
+}
+
 /// How late messages around `after` came, at most: a controller sends them at equal intervals, and stamps are
 /// of their arrival. A late one makes the interval before it long.
 double delay_around_s(const std::deque<JointState>& states, std::deque<JointState>::const_iterator after) {
@@ -47,18 +52,15 @@ std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach
   if (has_earlier) bend = acceleration(reach, *std::prev(before), *before, *after);
   if (has_later) bend = std::max(bend, acceleration(reach, *before, *after, *std::next(after)));
   const double cycle_s = seconds_between(*before, *after);
-  const double speed = reach.farthest_m(before->positions_rad, after->positions_rad) / cycle_s;
-  return speed * (sigma_s + delay_around_s(states, after)) + bend * cycle_s * cycle_s / 8;
+  return speed_between(reach, *before, *after) * (sigma_s + delay_around_s(states, after)) +
+         bend * cycle_s * cycle_s / 8;
 }
 
 double late_error_m(const JointHistory& joints, const LinkReach& reach, Clock::time_point exposed) {
   const auto& states = joints.states();
   const auto after = std::ranges::lower_bound(states, exposed, {}, &JointState::stamp);
   if (after == states.begin() || after == states.end()) return 0;
-  const auto before = std::prev(after);
-  const double speed =
-      reach.farthest_m(before->positions_rad, after->positions_rad) / seconds_between(*before, *after);
-  return speed * delay_around_s(states, after);
+  return speed_between(reach, *std::prev(after), *after) * delay_around_s(states, after);
 }
 
 }  // namespace calibrd

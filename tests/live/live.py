@@ -52,24 +52,30 @@ def settle(daemon: Daemon, timeout_s: float = 90.0) -> None:
 
 
 @contextlib.contextmanager
-def working_cell(*settings: str, postures: int = 6, motion: dict = WORKING):
-    """A simulator and a daemon, calibrated, the robot at work; the end of the log is shown when something goes wrong."""
+def scratch():
+    """A folder and the list of programs that run in it: stopped at the end, their logs' ends shown when something goes wrong."""
     with tempfile.TemporaryDirectory(prefix="calibrd-live-") as name:
-        programs = [Simulator(Path(name))]
+        programs = []
         try:
-            simulator = programs[0]
-            simulator.tell("PUT", "/motion", **motion)
-            daemon = Daemon(Path(name), simulator.controller_port, simulator.world_file, *settings)
-            programs.append(daemon)
-            job = daemon.wait_ready(60).calibrate(postures=postures)
-            if job["status"] != "succeeded":
-                raise AssertionError(f"the cell could not be calibrated: {job['message']}")
-            settle(daemon)
-            time.sleep(3)  # what stands around is learnt from the frames of this time as well
-            yield simulator, daemon
+            yield Path(name), programs
         except BaseException:
             print("".join(f"--- end of the log of {p.name}\n{p.output()[-4000:]}" for p in programs), file=sys.stderr)
             raise
         finally:
             for program in reversed(programs):
                 program.stop()
+
+
+@contextlib.contextmanager
+def working_cell(*settings: str, postures: int = 6, motion: dict = WORKING):
+    """A simulator and a daemon, calibrated, the robot at work."""
+    with scratch() as (folder, programs):
+        programs.append(simulator := Simulator(folder))
+        simulator.tell("PUT", "/motion", **motion)
+        programs.append(daemon := Daemon(folder, simulator.controller_port, simulator.world_file, *settings))
+        job = daemon.wait_ready(60).calibrate(postures=postures)
+        if job["status"] != "succeeded":
+            raise AssertionError(f"the cell could not be calibrated: {job['message']}")
+        settle(daemon)
+        time.sleep(3)  # what stands around is learnt from the frames of this time as well
+        yield simulator, daemon

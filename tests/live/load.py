@@ -13,11 +13,10 @@ import collections
 import json
 import os
 import sys
-import tempfile
 import time
 from pathlib import Path
 
-from live import WORKING, drift, machine, say, table  # first: it knows where cell is
+from live import WORKING, drift, machine, say, scratch, table  # first: it knows where cell is
 from cell import BUILD, SOURCE, Daemon, Simulator, call, wait_until
 
 TICKS = os.sysconf("SC_CLK_TCK")
@@ -144,27 +143,18 @@ def measure(simulator: Simulator, daemon: Daemon, sensors: list[str], motion: st
 
 def measure_cell(count: int, seconds: float) -> list[dict]:
     sensors, lines = [f"eye{i}" for i in range(count)], []
-    with tempfile.TemporaryDirectory(prefix="calibrd-load-") as name:
-        folder = Path(name)
-        programs = [Simulator(folder, world=world_of(count, folder))]
-        try:
-            simulator = programs[0]
-            daemon = Daemon(folder, simulator.controller_port, simulator.world_file, config=config_of(count, folder), of_demo=False)
-            programs.append(daemon)
-            calibrate(daemon.wait_ready(60), sensors)
-            simulator.tell("PUT", "/motion", mode="hold")
-            for motion in ("still", "moving"):
-                time.sleep(2)
-                if motion == "moving":
-                    go_to_and_fro(simulator)
-                lines.append(measure(simulator, daemon, sensors, motion, seconds))
-                say(**lines[-1])
-        except BaseException:
-            print("".join(f"--- end of the log of {p.name}\n{p.output()[-3000:]}" for p in programs), file=sys.stderr)
-            raise
-        finally:
-            for program in reversed(programs):
-                program.stop()
+    with scratch() as (folder, programs):
+        programs.append(simulator := Simulator(folder, world=world_of(count, folder)))
+        programs.append(daemon := Daemon(folder, simulator.controller_port, simulator.world_file, config=config_of(count, folder),
+                                         of_demo=False))
+        calibrate(daemon.wait_ready(60), sensors)
+        simulator.tell("PUT", "/motion", mode="hold")
+        for motion in ("still", "moving"):
+            time.sleep(2)
+            if motion == "moving":
+                go_to_and_fro(simulator)
+            lines.append(measure(simulator, daemon, sensors, motion, seconds))
+            say(**lines[-1])
     return lines
 
 

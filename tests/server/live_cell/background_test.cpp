@@ -13,15 +13,6 @@ class Background : public CellFixture {
     camera_ = {160, 120, 150, 150, 79.5, 59.5, {0, 0, 0, 0, 0}};  // coarse cells beside the robot, too
     on_calibrate_ = [](auto views, const auto&) { return accepted(views); };
   }
-  std::string calibrate_without_activating() {
-    api::CalibrationRequest request;
-    request.sensor_id = "eye";
-    request.postures = 1;
-    request.activate = false;
-    const auto id = cell_->start_calibration(request)->id;
-    let_it_end(id);
-    return id;
-  }
   bool is_known() {
     stand(0.5);
     show();

@@ -206,6 +206,17 @@ class CellFixture : public ::testing::Test {
     const std::lock_guard lock(feed_->mutex);
     feed_->health.state = state;
   }
+  /// A calibration that has been accepted, but waits to be activated.
+  std::string calibrate_without_activating() {
+    api::CalibrationRequest request;
+    request.sensor_id = "eye";
+    request.postures = 1;
+    request.activate = false;
+    const auto started = cell_->start_calibration(request);
+    EXPECT_TRUE(started);
+    let_it_end(started->id);
+    return started->id;
+  }
   /// A calibration that has been accepted.
   std::string calibrate() {
     const auto started = start_job(1);

@@ -76,12 +76,7 @@ TEST_F(Cell, ExceptionInTheComputationFailsTheCalibrationOnly) {
 
 TEST_F(Cell, CalibrationThatIsNotToBeActivatedCanBeLater) {
   const auto first = calibrate();
-  api::CalibrationRequest request;
-  request.sensor_id = "eye";
-  request.postures = 1;
-  request.activate = false;
-  const auto second = cell_->start_calibration(request)->id;
-  let_it_end(second);
+  const auto second = calibrate_without_activating();
   EXPECT_EQ(job(second).status, JobStatus::succeeded);
   EXPECT_EQ(pose().known->calibration_id, first);
   agrees_ = false;
