@@ -133,6 +133,20 @@ TEST_F(DriftWatchTest, AKnockWhileSomebodyStandsInFrontIsFound) {
   EXPECT_EQ(watch_for(1), DriftVerdict::sensor_moved);
 }
 
+TEST_F(DriftWatchTest, WhatTheArmCarriesIsNothingInFront) {
+  const auto tip = [&] {
+    cell_.set_joints(joints_now());
+    return Eigen::Vector3d(cell_.link_poses().back().translation());
+  };
+  room_.blocks.push_back({tip(), Eigen::Vector3d::Constant(0.16)});
+  int in_front = 0;
+  watch_for(6, [&] {
+    room_.blocks.back().middle = tip();
+    in_front += verdict() == DriftVerdict::something_in_front ? 1 : 0;
+  });
+  EXPECT_EQ(in_front, 0);
+}
+
 TEST_F(DriftWatchTest, ABoxTakenAwayIsAChangeOfTheScene) {
   watch_for(1);
   room_.blocks.erase(room_.blocks.begin() + 6);

@@ -198,6 +198,17 @@ TEST(ViewGate, AMovingRobotsFrameIsNoViewWhereAMessageCameLate) {
   EXPECT_GT(*judge_timed(turning(0.2, 0, 8ms), 0.0005).timing_error_m, 0.2 * 0.3 * 0.008);
 }
 
+TEST(ViewGate, AMessageThatCameLateSomeBeforeCountsToo) {
+  JointHistory history;
+  for (auto t = 0ms; t <= 1000ms; t += 25ms) {
+    auto positions = test::postures(1).front();
+    positions[0] += 0.2 * std::chrono::duration<double>(t).count();
+    history.add(
+        {positions, {}, 0, at(t == 825ms ? t + 8ms : t)});  // none of those that tell the acceleration
+  }
+  EXPECT_EQ(judge_timed(history, 0.0005).verdict, FrameVerdict::moving);
+}
+
 TEST(ViewGate, JointsOfAMovingRobotThatCameMuchTooLateAreNotKnown) {
   const auto late = judge_timed(turning(1.0, 0, 60ms), 0.0005), in_time = judge_timed(turning(1.0), 0.0005);
   EXPECT_EQ(late.verdict, FrameVerdict::moving);
