@@ -30,13 +30,13 @@ struct CrossCheck {
   double sigmas = 0;  ///< of both poses and the clouds, per degree of freedom; 1 is what chance makes of it
 
   /// Beyond this the two poses cannot both be right, or something was moved between their calibrations.
-  static constexpr double kMostSigmas = 3;
+  static constexpr double kMostSigmas = 2;
   bool disagrees() const { return has_overlap && sigmas > kMostSigmas; }
 };
 
 /// Point-to-plane, robustly, of the second sensor's background on the first's, in the base frame; pose and
-/// the range offsets of both are free. Neither robot nor calibration takes part: what one of them gets wrong
-/// shows here. Each background must have been learnt from about where its pose puts the sensor.
+/// the range errors of both are free (RangeError). Neither robot nor calibration takes part: what one of them
+/// gets wrong shows here. Each background must have been learnt from about where its pose puts the sensor.
 CrossCheck cross_check(const CheckedSensor& first, const CheckedSensor& second);
 
 }  // namespace calibrd

@@ -7,8 +7,7 @@ namespace calibrd {
 
 /// Both poses with what the clouds say of how they lie to each other: each pulls on the other by how much
 /// better it is known (Kalman update of the twelve degrees of freedom). Measured (docs/sensors.md), this
-/// makes two good poses no better, for range errors beyond the robot weigh more than they are uncertain: the
-/// daemon only compares.
+/// hardly makes two good poses better: the daemon only compares.
 struct FusedPoses {
   Pose first_T_base_sensor, second_T_base_sensor;
   Matrix6d first_covariance, second_covariance;  ///< see perturbed()

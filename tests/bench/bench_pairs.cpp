@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <boost/json.hpp>
 #include <cstdio>
 #include <ctime>
@@ -18,6 +19,8 @@ namespace json = boost::json;
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kWrong_m = 0.02, kWrong_rad = 0.02;
+/// By how much the second sensor's focal length is configured too long, to see who notices.
+constexpr std::array kWrongFocal{1.02, 1.03};
 
 /// One sensor of a pair, calibrated from its own views.
 struct Calibrated {
@@ -58,15 +61,16 @@ Calibrated second_of(const Scene& scene, const std::shared_ptr<const sim::Sensor
   return second;
 }
 
-bool calibrate_it(const Scene& scene, Calibrated& sensor) {
+/// As if it had the intrinsics `camera`.
+bool calibrate_it(const Scene& scene, const CameraModel& camera, Calibrated& sensor) {
   const VirtualCell cell(scene.robot->model);
-  sensor.result = calibrate(cell, scene.camera, sensor.views, {});
+  sensor.result = calibrate(cell, camera, sensor.views, {});
   if (sensor.result.verdict != Verdict::accepted) return false;
-  RobotMask mask(cell, scene.camera);
+  RobotMask mask(cell, camera);
   std::vector<std::vector<std::uint8_t>> masks;
   for (const View& view : sensor.views)
     masks.push_back(mask.at(view.joint_positions_rad, *sensor.result.T_base_sensor));
-  sensor.background = std::make_unique<BackgroundMap>(scene.camera);
+  sensor.background = std::make_unique<BackgroundMap>(camera);
   sensor.background->learn(sensor.views, masks);
   return true;
 }
@@ -82,6 +86,7 @@ Errors error_of(const Pose& truth, const Pose& found) {
 struct Totals {
   std::vector<double> single_m, fused_m, single_rad, fused_rad, sigmas, wrong_sigmas, obstacles_ms;
   int pairs = 0, without_overlap = 0, disagree = 0, wrong_found = 0;
+  int focal_accepted = 0, focal_found = 0;  ///< poses of wrong focal lengths: by their own views, by the pair
 };
 
 /// The median processor time of looking for obstacles in a frame.
@@ -97,7 +102,25 @@ double obstacles_ms(const Scene& scene, const Calibrated& sensor) {
   return median(times);
 }
 
-void run_pair(const Scene& scene, const Calibrated& first, const Calibrated& second, std::uint64_t seed,
+/// Sigmas apart, for each wrong focal length that the second's own views accept.
+json::array with_wrong_focal(const Scene& scene, const Calibrated& first, Calibrated& second,
+                             Totals& totals) {
+  json::array sigmas;
+  for (const double wrong : kWrongFocal) {
+    CameraModel camera = scene.camera;
+    camera.fx *= wrong;
+    camera.fy *= wrong;
+    Calibrated off{second.truth_T_base_sensor, second.views, {}, nullptr};
+    if (!calibrate_it(scene, camera, off)) continue;
+    const CrossCheck check = cross_check(first.checked(), off.checked());
+    ++totals.focal_accepted;
+    totals.focal_found += check.disagrees();
+    sigmas.push_back(std::isfinite(check.sigmas) ? json::value(check.sigmas) : json::value("inf"));
+  }
+  return sigmas;
+}
+
+void run_pair(const Scene& scene, const Calibrated& first, Calibrated& second, std::uint64_t seed,
               Totals& totals) {
   ++totals.pairs;
   const CrossCheck check = cross_check(first.checked(), second.checked());
@@ -129,6 +152,7 @@ void run_pair(const Scene& scene, const Calibrated& first, const Calibrated& sec
       {"sigmas", check.sigmas},
       {"shift_mm", 1e3 * check.shift_m},
       {"turn_mrad", 1e3 * check.turn_rad},
+      {"sigmas_of_wrong_focal", with_wrong_focal(scene, first, second, totals)},
       {"sigmas_of_wrong", std::isfinite(wrong.sigmas) ? json::value(wrong.sigmas) : json::value("inf")}};
   std::printf("%s\n", json::serialize(line).c_str());
   std::fflush(stdout);
@@ -141,10 +165,11 @@ double largest(const std::vector<double>& values) {
 void print_totals(const Totals& totals) {
   std::printf(
       "{\"pairs\": %d, \"without_overlap\": %d, \"disagree\": %d, \"sigmas_median\": %s, \"sigmas_max\": %s, "
-      "\"wrong_found\": %d, \"single_mm\": %s, \"fused_mm\": %s, \"single_mrad\": %s, \"fused_mrad\": %s, "
+      "\"wrong_found\": %d, \"focal_accepted\": %d, \"focal_found\": %d, \"single_mm\": %s, \"fused_mm\": "
+      "%s, \"single_mrad\": %s, \"fused_mrad\": %s, "
       "\"obstacles_ms\": %s}\n",
       totals.pairs, totals.without_overlap, totals.disagree, shown(median(totals.sigmas), 2).c_str(),
-      shown(largest(totals.sigmas), 2).c_str(), totals.wrong_found,
+      shown(largest(totals.sigmas), 2).c_str(), totals.wrong_found, totals.focal_accepted, totals.focal_found,
       shown(1e3 * median(totals.single_m), 3).c_str(), shown(1e3 * median(totals.fused_m), 3).c_str(),
       shown(1e3 * median(totals.single_rad), 3).c_str(), shown(1e3 * median(totals.fused_rad), 3).c_str(),
       shown(median(totals.obstacles_ms), 2).c_str());
@@ -165,7 +190,7 @@ int run_pairs(const PairsOptions& options) {
     if (!scene) continue;
     Calibrated first{scene->truth.T_base_sensor, scene->views, {}, nullptr};
     Calibrated second = second_of(*scene, tables, seed);
-    if (calibrate_it(*scene, first) && calibrate_it(*scene, second))
+    if (calibrate_it(*scene, scene->camera, first) && calibrate_it(*scene, scene->camera, second))
       run_pair(*scene, first, second, seed, totals);
   }
   print_totals(totals);
