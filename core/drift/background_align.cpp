@@ -18,7 +18,7 @@ constexpr double kSigma_m = 0.003, kCorrelation = 10;
 struct Sums {
   Matrix6d information = Matrix6d::Identity() * 1e-6;
   Vector6d gradient = Vector6d::Zero();
-  std::size_t pairs = 0, inliers = 0, points = 0;
+  std::size_t pairs = 0, inliers = 0, on_planes = 0, points = 0, seen = 0;
 };
 
 /// The plane that the point (sensor frame as learnt) projects onto; nullptr where none is remembered.
@@ -42,11 +42,13 @@ Sums collect(const BackgroundMap& map, std::span<const float> depth_m, std::span
     for (int x = 0; x < grid.width; x += kStep_cells) {
       const auto i = static_cast<std::size_t>(y * grid.width + x);
       if (depth_m[i] <= 0 || (!robot.empty() && robot[i] != 0)) continue;
+      ++sums.seen;
       const Eigen::Vector3d p = T_learnt_now * (static_cast<double>(depth_m[i]) * map.rays().at(x, y));
       bool inside = false;
       const BackgroundCell* plane = plane_at(map, p, inside);
       sums.points += inside ? 1 : 0;
       if (plane == nullptr) continue;
+      ++sums.on_planes;
       const Eigen::Vector3d m = plane->normal_per_m.cast<double>();
       const double scale = 1 / m.norm(), residual = (m.dot(p) - 1) * scale, off = residual / kernel_m;
       if (std::abs(residual) < kInlier_m) ++sums.inliers;
@@ -85,6 +87,8 @@ std::optional<BackgroundAlignment> align_background(const BackgroundMap& map, st
   const Sums last = collect(map, depth_m, robot, found.T_learnt_now, kLastKernel_m);
   if (last.points < kLeastPairs || last.pairs < kLeastPairs) return std::nullopt;
   found.inliers = static_cast<double>(last.inliers) / static_cast<double>(last.points);
+  found.on_planes = static_cast<double>(last.on_planes) / static_cast<double>(last.seen);
+  found.plane_inliers = static_cast<double>(last.inliers) / static_cast<double>(last.on_planes);
   if (found.inliers < kLeastInliers) return std::nullopt;
   return found;
 }

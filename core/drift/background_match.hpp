@@ -32,8 +32,10 @@ struct BackgroundObservation {
   double known_offset_m() const { return offset_sigma_m < kKnownOffset_m ? offset_change_m : 0; }
   static constexpr double kKnownOffset_m = 0.003;
   double scatter = 1;       ///< residuals against what noise explains
-  double common_share = 0;  ///< of the covariance: what all frames have in common, the noise of the map
-  bool realigned = false;   ///< the background had to be searched: it lies far from where it should
+  /// Of the covariance: what all frames have in common, the noise of the map and what no model of it has.
+  double common_share = 0;
+  bool realigned = false;  ///< the background had to be searched: it lies far from where it should
+  bool elsewhere = false;  ///< and all of it lies there, though it leaves open where that is
   std::array<std::size_t, 6> counts{};  ///< cells of each CellState
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
   /// Cells that could tell: remembered, not hidden by the robot.

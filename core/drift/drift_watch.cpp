@@ -19,6 +19,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 /// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
 /// the background is still where it was: a fit to less settles anywhere.
 constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
+constexpr double kMuch = 0.35, kWhole = 0.9;  // shares of a frame
 constexpr double kRobotHolds_s = 10;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
@@ -118,13 +119,30 @@ bool DriftWatch::is_pinned(const BackgroundAlignment& found) const {
          worst_sigma(covariance.bottomRightCorner<3, 3>()) < kSeenWithin_m;
 }
 
+/// All that is seen is the background seen from elsewhere, whatever directions it leaves open.
+bool DriftWatch::lies_elsewhere(const BackgroundAlignment& found) const {
+  if (found.on_planes < kMuch || found.plane_inliers < kWhole) return false;
+  Matrix6d move = shift_of_point(map_.middle_sensor());  // in units of what is known well
+  move.topRows<3>() /= kSeenWithin_rad;
+  move.bottomRows<3>() /= kSeenWithin_m;
+  const Vector6d shift = move * difference(Pose::Identity(), found.T_learnt_now);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(move * found.covariance * move.transpose());
+  double square = 0;
+  for (Eigen::Index i = 0; i < 6 && axes.eigenvalues()[i] < 1; ++i)
+    square += std::pow(axes.eigenvectors().col(i).dot(shift), 2);
+  return square > 1;
+}
+
 /// The background is not where it was, pixel by pixel: perhaps the sensor sees it from elsewhere.
 void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation) {
   if (observation.share(CellState::dark) > 0.8) return;
   std::optional<BackgroundAlignment> found;
   if (T_learnt_now_) found = align_background(map_, matcher_.depth_m(), {}, *T_learnt_now_);
   if (!found) found = align_background(map_, matcher_.depth_m(), robot, Pose::Identity());
-  if (!found || !is_pinned(*found)) return T_learnt_now_.reset();
+  if (!found || !is_pinned(*found)) {
+    observation.elsewhere = found && lies_elsewhere(*found);
+    return T_learnt_now_.reset();
+  }
   T_learnt_now_ = found->T_learnt_now;
   const Matrix6d turn = turn_of_axes(T_base_sensor_.linear());
   observation.has_evidence = observation.realigned = true;
@@ -187,9 +205,10 @@ void DriftWatch::follow_offset(const BackgroundObservation& observation, double 
 }
 
 /// Nothing of the background is where any nearby place of the sensor would see it, and that is not because
-/// something stands in front: much lies farther, or the robot is elsewhere, too.
+/// something stands in front: much lies farther, or the robot is elsewhere, too, or all of it lies on one
+/// plane that was there before.
 void DriftWatch::follow_loss(const BackgroundObservation& observation, double now_s) {
-  const bool elsewhere = observation.share(CellState::farther) >= kLeastGone ||
+  const bool elsewhere = observation.elsewhere || observation.share(CellState::farther) >= kLeastGone ||
                          (observation.share(CellState::same) < kLeastLeft && is_robot_off());
   const bool lost = !observation.has_evidence && elsewhere;
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;

@@ -69,6 +69,7 @@ class DriftWatch {
  private:
   void start_over();
   bool is_pinned(const BackgroundAlignment& found) const;
+  bool lies_elsewhere(const BackgroundAlignment& found) const;
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
   void count_quiet();

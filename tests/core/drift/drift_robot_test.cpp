@@ -152,5 +152,19 @@ TEST_F(BeforeAWall, ATurnIsSeenByTheWallAlone) {
   EXPECT_EQ(watch_for(1), DriftVerdict::sensor_moved);
 }
 
+TEST_F(BeforeAWall, AKnockAfterWhichTheWallIsNowhereNearIsFoundByTheWallAlone) {
+  watch_for(1);
+  moved_.tail<3>() = 0.1 * true_T_base_sensor().linear().col(2);
+  watch_for(0.5);
+  EXPECT_GT(watch_.report().nearer, 0.9);
+  EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
+}
+
+TEST_F(BeforeAWall, ABoardHeldBeforeItIsNoKnock) {
+  watch_for(1);
+  room_.hidden_share = 0.7;
+  EXPECT_EQ(watch_for(5), DriftVerdict::something_in_front);
+}
+
 }  // namespace
 }  // namespace calibrd
