@@ -10,6 +10,7 @@ namespace {
 
 /// One controller cycle: also with no settle time the robot must not move across the exposure.
 constexpr auto kShortestWindow = std::chrono::milliseconds(25);
+constexpr double kOffsetSigmas = 3;
 
 bool stood_still(const JointHistory& joints, const ViewGateSettings& settings, Clock::time_point begin,
                  Clock::time_point end) {
@@ -125,18 +126,30 @@ FrameDecision ViewGate::judge(const JointHistory& joints, Clock::time_point stam
   else if (bracket->after->stamp - bracket->before->stamp > settings_.stale_after)
     decision.verdict = FrameVerdict::joints_stale;
   else
-    decision.verdict = judge_motion(joints, decision);
+    decision.verdict = judge_motion(joints, decision, now);
   return decision;
 }
 
+/// Whether the robot stood from before the exposure until no message that was still to come could say otherwise
+/// of the exposure.
+FrameVerdict ViewGate::judge_stillness(const JointHistory& joints, Clock::time_point exposed,
+                                       Clock::time_point now) const {
+  if (!stood_still(joints, settings_, exposed - settings_.settle_time, exposed)) return FrameVerdict::moving;
+  const Clock::duration known_to = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(kOffsetSigmas * (offset_ ? offset_->sigma_s : 0)));
+  const auto until = exposed + (offset_ ? std::min(known_to, settings_.lateness) : settings_.lateness);
+  if (joints.newest()->stamp < until) return without_joints_around(joints, until, now);
+  return stood_still(joints, settings_, exposed, until) ? FrameVerdict::usable : FrameVerdict::moving;
+}
+
 /// With the joints of the frame's time at hand.
-FrameVerdict ViewGate::judge_motion(const JointHistory& joints, FrameDecision& decision) const {
+FrameVerdict ViewGate::judge_motion(const JointHistory& joints, FrameDecision& decision,
+                                    Clock::time_point now) const {
   if (is_doubtful(joints, decision.exposed)) return FrameVerdict::moving;
   decision.positions_rad = joints.positions_at(decision.exposed);
-  if (stood_still(joints, settings_, decision.exposed - settings_.settle_time, decision.exposed)) {
-    decision.timing_error_m = 0;
-    return FrameVerdict::usable;
-  }
+  const auto stillness = judge_stillness(joints, decision.exposed, now);
+  if (stillness == FrameVerdict::usable) decision.timing_error_m = 0;
+  if (stillness != FrameVerdict::moving) return stillness;
   if (reach_ && late_error_m(joints, *reach_, decision.exposed) > settings_.largest_late_error_m) {
     decision.positions_rad.reset();  // old joints under a new stamp
     return FrameVerdict::moving;

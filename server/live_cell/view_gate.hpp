@@ -37,6 +37,9 @@ struct ViewGateSettings {
   Clock::duration stale_after = std::chrono::milliseconds(250);
   Clock::duration settle_time = std::chrono::milliseconds(300);
   Clock::duration latency{0};        ///< from exposure to the frame's stamp
+  /// Joints may be told so late after the moment they are of, where the time offset is not estimated: a robot
+  /// that begins to move so soon after the exposure may have moved during it.
+  Clock::duration lateness = std::chrono::milliseconds(100);
   double still_speed_rad_s = 0.002;  ///< the robot is still while no joint is faster
   bool trust_in_motion = true;       ///< a robot whose controller says that it moves is not still
   bool timed_views = false;          ///< frames of a moving robot may be views, too
@@ -83,7 +86,9 @@ class ViewGate {
  private:
   FrameVerdict without_joints_around(const JointHistory& joints, Clock::time_point exposed,
                                      Clock::time_point now) const;
-  FrameVerdict judge_motion(const JointHistory& joints, FrameDecision& decision) const;
+  FrameVerdict judge_motion(const JointHistory& joints, FrameDecision& decision, Clock::time_point now) const;
+  FrameVerdict judge_stillness(const JointHistory& joints, Clock::time_point exposed,
+                               Clock::time_point now) const;
 
   ViewGateSettings settings_;
   std::shared_ptr<const LinkReach> reach_;

@@ -35,7 +35,7 @@ FrameDecision judge(const JointHistory& history, std::chrono::milliseconds frame
 }
 
 TEST(ViewGate, FrameOfARobotThatStoodStillIsAView) {
-  const auto decision = judge(joints(1000ms), 990ms, 1000ms);
+  const auto decision = judge(joints(1000ms), 890ms, 1000ms);
   EXPECT_EQ(decision.verdict, FrameVerdict::usable);
   ASSERT_TRUE(decision.positions_rad);
   EXPECT_DOUBLE_EQ((*decision.positions_rad)[0], 0.5);
@@ -43,7 +43,25 @@ TEST(ViewGate, FrameOfARobotThatStoodStillIsAView) {
 
 TEST(ViewGate, WaitsForTheJointsAfterTheFrame) {
   EXPECT_EQ(judge(joints(975ms), 990ms, 991ms).verdict, FrameVerdict::awaiting_joints);
-  EXPECT_EQ(judge(joints(1000ms), 990ms, 1001ms).verdict, FrameVerdict::usable);
+  EXPECT_EQ(judge(joints(1000ms), 990ms, 1001ms).verdict, FrameVerdict::awaiting_joints);
+  EXPECT_EQ(judge(joints(1100ms), 990ms, 1101ms).verdict, FrameVerdict::usable);
+}
+
+TEST(ViewGate, MotionThatLateJointsTellOfOnlyAfterTheExposureSpoilsTheFrame) {
+  EXPECT_EQ(judge(joints(1100ms, 0.5, 975ms), 900ms, 1100ms).verdict, FrameVerdict::moving);
+  EXPECT_EQ(judge(joints(1100ms, 0.5, 1025ms), 900ms, 1100ms).verdict, FrameVerdict::usable);
+}
+
+TEST(ViewGate, AnEstimatedOffsetNeedsNotWaitForLateJoints) {
+  ViewGate gate({});
+  gate.set_offset(AppliedOffset{0ms, 0.002});
+  EXPECT_EQ(gate.enter(1, at(900ms)), FrameVerdict::usable);
+  EXPECT_EQ(gate.judge(joints(925ms), at(926ms)).verdict, FrameVerdict::usable);
+  EXPECT_EQ(gate.judge(joints(1100ms, 0.5, 975ms), at(1100ms)).verdict, FrameVerdict::usable);
+}
+
+TEST(ViewGate, JointsThatStopRightAfterTheFrameAreStale) {
+  EXPECT_EQ(judge(joints(1000ms), 990ms, 1300ms).verdict, FrameVerdict::joints_stale);
 }
 
 TEST(ViewGate, MovingRobotGivesNoViewButItsPositionsAreKnown) {
@@ -68,13 +86,14 @@ TEST(ViewGate, MotionThatBeginsRightAfterTheExposureSpoilsTheFrame) {
 TEST(ViewGate, LatencyIsTakenOffTheStamp) {
   ViewGateSettings settings;
   settings.latency = 40ms;
+  settings.lateness = 0ms;
   EXPECT_EQ(judge(joints(1000ms, 0.5, 975ms), 1010ms, 1010ms, settings).verdict, FrameVerdict::usable);
   EXPECT_EQ(judge(joints(1000ms, 0.5, 975ms), 1030ms, 1030ms, settings).verdict, FrameVerdict::moving);
 }
 
 TEST(ViewGate, SlowCreepIsMotion) {
   EXPECT_EQ(judge(joints(1000ms, 0.003), 990ms, 1000ms).verdict, FrameVerdict::moving);
-  EXPECT_EQ(judge(joints(1000ms, 0.001), 990ms, 1000ms).verdict, FrameVerdict::usable);
+  EXPECT_EQ(judge(joints(1000ms, 0.001), 890ms, 1000ms).verdict, FrameVerdict::usable);
 }
 
 TEST(ViewGate, StaleJointsGiveNoView) {
@@ -137,7 +156,7 @@ TEST(ViewGate, ARobotWhoseControllerSaysThatItMovesIsNotStill) {
   const auto decision = judge(with_status(joints(300ms), true), 290ms, 300ms);
   EXPECT_EQ(decision.verdict, FrameVerdict::moving);
   EXPECT_FALSE(decision.positions_rad);  // joints that repeat all the while are in doubt
-  EXPECT_EQ(judge(with_status(joints(1000ms), false), 990ms, 1000ms).verdict, FrameVerdict::usable);
+  EXPECT_EQ(judge(with_status(joints(1000ms), false), 890ms, 1000ms).verdict, FrameVerdict::usable);
 }
 
 TEST(ViewGate, FrozenJointsGiveNoViewAlsoWhenTheRobotHasStopped) {
