@@ -11,26 +11,24 @@ namespace {
 constexpr int kSteps = 18, kStep_cells = 2;
 constexpr double kFirstKernel_m = 0.2, kLastKernel_m = 0.02, kNarrowing = 0.8;
 constexpr double kInlier_m = 0.02;
-constexpr double kLeastInliers = 0.5;
+constexpr double kLeastOnPlanes = 0.2, kLeastInliers = 0.5;
 constexpr std::size_t kLeastPairs = 150;
 constexpr double kSigma_m = 0.003, kCorrelation = 10;
 
 struct Sums {
   Matrix6d information = Matrix6d::Identity() * 1e-6;
   Vector6d gradient = Vector6d::Zero();
-  std::size_t pairs = 0, inliers = 0, on_planes = 0, points = 0, seen = 0;
+  std::size_t pairs = 0, inliers = 0, on_planes = 0, points = 0;
 };
 
 /// The plane that the point (sensor frame as learnt) projects onto; nullptr where none is remembered.
-const BackgroundCell* plane_at(const BackgroundMap& map, const Eigen::Vector3d& point, bool& inside) {
-  inside = false;
+const BackgroundCell* plane_at(const BackgroundMap& map, const Eigen::Vector3d& point) {
   if (point.z() < 0.1) return nullptr;
   const CameraModel& grid = map.grid();
   const Eigen::Vector2d pixel = grid.project(point);
   const auto x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
   if (!pixel.allFinite() || x < 0 || y < 0 || x >= grid.width || y >= grid.height) return nullptr;
   const BackgroundCell& cell = map.cells()[static_cast<std::size_t>(y * grid.width + x)];
-  inside = cell.depth_m > 0;
   return cell.has_plane() ? &cell : nullptr;
 }
 
@@ -42,11 +40,9 @@ Sums collect(const BackgroundMap& map, std::span<const float> depth_m, std::span
     for (int x = 0; x < grid.width; x += kStep_cells) {
       const auto i = static_cast<std::size_t>(y * grid.width + x);
       if (depth_m[i] <= 0 || (!robot.empty() && robot[i] != 0)) continue;
-      ++sums.seen;
+      ++sums.points;
       const Eigen::Vector3d p = T_learnt_now * (static_cast<double>(depth_m[i]) * map.rays().at(x, y));
-      bool inside = false;
-      const BackgroundCell* plane = plane_at(map, p, inside);
-      sums.points += inside ? 1 : 0;
+      const BackgroundCell* plane = plane_at(map, p);
       if (plane == nullptr) continue;
       ++sums.on_planes;
       const Eigen::Vector3d m = plane->normal_per_m.cast<double>();
@@ -85,11 +81,10 @@ std::optional<BackgroundAlignment> align_background(const BackgroundMap& map, st
     kernel_m = std::max(kLastKernel_m, kNarrowing * kernel_m);
   }
   const Sums last = collect(map, depth_m, robot, found.T_learnt_now, kLastKernel_m);
-  if (last.points < kLeastPairs || last.pairs < kLeastPairs) return std::nullopt;
-  found.inliers = static_cast<double>(last.inliers) / static_cast<double>(last.points);
-  found.on_planes = static_cast<double>(last.on_planes) / static_cast<double>(last.seen);
-  found.plane_inliers = static_cast<double>(last.inliers) / static_cast<double>(last.on_planes);
-  if (found.inliers < kLeastInliers) return std::nullopt;
+  if (last.pairs < kLeastPairs) return std::nullopt;
+  found.on_planes = static_cast<double>(last.on_planes) / static_cast<double>(last.points);
+  found.inliers = static_cast<double>(last.inliers) / static_cast<double>(last.on_planes);
+  if (found.on_planes < kLeastOnPlanes || found.inliers < kLeastInliers) return std::nullopt;
   return found;
 }
 

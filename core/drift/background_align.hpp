@@ -14,10 +14,9 @@ namespace calibrd {
 struct BackgroundAlignment {
   Pose T_learnt_now = Pose::Identity();    ///< from the sensor now to where it was when the map was learnt
   Matrix6d covariance = Matrix6d::Zero();  ///< of its perturbation, axes of the sensor as learnt
-  /// Share of the frame's points where something is remembered that lie on it: edges of it lie on nothing.
-  double inliers = 0;
-  double on_planes = 0;      ///< share of all the frame's points that meet a remembered plane ...
-  double plane_inliers = 0;  ///< ... and of these, that lie on it
+  /// Share of the frame's points that meet a remembered plane (not an edge, not what was never seen) ...
+  double on_planes = 0;
+  double inliers = 0;  ///< ... and of these, that lie on it
 };
 
 /// Pulls a frame onto the background by projective point-to-plane pairs, kernel narrowing from 0.2 m: for

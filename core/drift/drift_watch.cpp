@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kGap_s = 1.5;  // between frames: the sensor was away
 constexpr int kQuietFrames = 10;
-constexpr double kLost_s = 1;       // a background that is nowhere for so long: the sensor looks elsewhere
+constexpr double kLost_s = 0.5;     // a background that is nowhere for so long: the sensor looks elsewhere
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr double kLeastLeft = 0.1;  // share of it that is where it was
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
@@ -121,7 +121,7 @@ bool DriftWatch::is_pinned(const BackgroundAlignment& found) const {
 
 /// All that is seen is the background seen from elsewhere, whatever directions it leaves open.
 bool DriftWatch::lies_elsewhere(const BackgroundAlignment& found) const {
-  if (found.on_planes < kMuch || found.plane_inliers < kWhole) return false;
+  if (found.on_planes < kMuch || found.inliers < kWhole) return false;
   Matrix6d move = shift_of_point(map_.middle_sensor());  // in units of what is known well
   move.topRows<3>() /= kSeenWithin_rad;
   move.bottomRows<3>() /= kSeenWithin_m;
