@@ -60,11 +60,14 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
   fit_planes();
 }
 
-void BackgroundMap::recall(std::span<const float> depth_m) {
+void BackgroundMap::recall(std::span<const float> depth_m, int views) {
   if (depth_m.size() != cells_.size()) return;
+  is_recalled_ = true;
+  // The robot hides a cell in some of the views; what most agree on is the mean of half of them at least.
+  const auto frames = static_cast<float>(std::max(1, views / 2));
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     cells_[i].depth_m = depth_m[i];
-    cells_[i].frames = kMostFrames;  // it is there to be compared with, not to be added to
+    cells_[i].frames = frames;
   }
   fit_planes();
 }
@@ -86,6 +89,7 @@ void BackgroundMap::relearn(std::span<const float> depth_m, std::span<const floa
 }
 
 void BackgroundMap::refine(std::span<const float> depth_m, std::span<const std::uint8_t> chosen) {
+  if (is_recalled_) return;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     BackgroundCell& cell = cells_[i];
     if (chosen[i] == 0 || depth_m[i] <= 0 || cell.depth_m <= 0 || cell.frames >= kMostFrames) continue;

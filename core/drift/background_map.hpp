@@ -36,8 +36,9 @@ class BackgroundMap {
   /// views agree on, where the robot is not; `robot` holds one coarse mask per view (see RobotMask).
   void learn(std::span<const View> views, std::span<const std::vector<std::uint8_t>> robot);
 
-  /// Takes depths that were learnt before: one per cell, m, 0 = nothing known. Others are ignored.
-  void recall(std::span<const float> depth_m);
+  /// Takes depths that were learnt before from about `views` views: one per cell, m, 0 = nothing known.
+  /// Others are ignored. From then on it is there to be compared with: refine() leaves it as it is.
+  void recall(std::span<const float> depth_m, int views);
   /// What recall() takes.
   std::vector<float> depths_m() const;
 
@@ -70,6 +71,7 @@ class BackgroundMap {
   PixelRays rays_;
   std::vector<BackgroundCell> cells_;
   std::size_t planes_ = 0;
+  bool is_recalled_ = false;
   Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();
 };
 

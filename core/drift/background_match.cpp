@@ -28,13 +28,13 @@ constexpr std::size_t kLeastCells = 150;
 constexpr std::size_t kRowsInSingle = 128;
 /// Below this share of what could be seen the fit may be of anything.
 constexpr double kLeastShare = 0.35;
-/// No direction is known worse than this before the frame, rad and m: along a plain wall the fit would slide as
-/// far as it likes, and leak into what the wall does show. Who has moved farther is searched for.
+/// No direction is known worse than this before the frame, rad and m: along a plain wall the fit would slide
+/// as far as it likes, and leak into what the wall does show. Who has moved farther is searched for.
 constexpr double kVague = 0.02, kVagueOffset_m = 0.1;
 
 constexpr double kSpuriousSafety = 1.5;
-/// Share of a frame's covariance that no other frame averages out: bumps that were no planes, a part that hangs
-/// before them. Where the background shows a direction well it is next to nothing.
+/// Share of a frame's covariance that no other frame averages out: bumps that were no planes, a part that
+/// hangs before them. Where the background shows a direction well it is next to nothing.
 constexpr double kUnmodelledShare = 0.2;
 using Sums = Eigen::Matrix<double, BackgroundMatcher::kParameters, BackgroundMatcher::kParameters>;
 using Slope = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, 1>;
@@ -230,8 +230,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.offset_change_m = found.solution[6];
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;
-  observation.common_share =
-      std::min(1.0, kUnmodelledShare + found.common / static_cast<double>(found.used));
+  observation.common_share = std::min(1.0, kUnmodelledShare + found.common / static_cast<double>(found.used));
   if (observation.has_evidence && std::abs(observation.known_offset_m()) < kFarKernel_m)
     last_offset_m_ = observation.known_offset_m();
   return observation;

@@ -31,7 +31,7 @@ struct BackgroundObservation {
   /// Of that what can be relied on: before a single wall an offset looks like a shift.
   double known_offset_m() const { return offset_sigma_m < kKnownOffset_m ? offset_change_m : 0; }
   static constexpr double kKnownOffset_m = 0.003;
-  double scatter = 1;       ///< residuals against what noise explains
+  double scatter = 1;  ///< residuals against what noise explains
   /// Of the covariance: what all frames have in common, the noise of the map and what no model of it has.
   double common_share = 0;
   bool realigned = false;  ///< the background had to be searched: it lies far from where it should

@@ -109,7 +109,7 @@ CalibrationJobs::Background LiveCell::stored_background(const api::CalibrationRe
   const auto depth_m = store_.background(calibration.id);
   if (entry == entries_.end() || !depth_m || !*depth_m) return nullptr;
   auto background = std::make_shared<BackgroundMap>(entry->second->setup.camera);
-  background->recall(**depth_m);
+  background->recall(**depth_m, calibration.result ? calibration.result->views : 1);
   return background;
 }
 

@@ -130,8 +130,8 @@ FrameDecision ViewGate::judge(const JointHistory& joints, Clock::time_point stam
   return decision;
 }
 
-/// Whether the robot stood from before the exposure until no message that was still to come could say otherwise
-/// of the exposure.
+/// Whether the robot stood from before the exposure until no message that was still to come could say
+/// otherwise of the exposure.
 FrameVerdict ViewGate::judge_stillness(const JointHistory& joints, Clock::time_point exposed,
                                        Clock::time_point now) const {
   if (!stood_still(joints, settings_, exposed - settings_.settle_time, exposed)) return FrameVerdict::moving;

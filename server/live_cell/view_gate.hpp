@@ -36,7 +36,7 @@ const char* reason_of(FrameVerdict verdict);
 struct ViewGateSettings {
   Clock::duration stale_after = std::chrono::milliseconds(250);
   Clock::duration settle_time = std::chrono::milliseconds(300);
-  Clock::duration latency{0};        ///< from exposure to the frame's stamp
+  Clock::duration latency{0};  ///< from exposure to the frame's stamp
   /// Joints may be told so late after the moment they are of, where the time offset is not estimated: a robot
   /// that begins to move so soon after the exposure may have moved during it.
   Clock::duration lateness = std::chrono::milliseconds(100);

@@ -11,12 +11,14 @@ namespace {
 
 using namespace test;
 
-/// Depth of the empty room at a cell.
-double true_depth_m(Room room, std::size_t cell) {
-  room.has_arm = false;
-  room.noise_sigma_m = 0;
-  static View view;
-  if (view.depth.raw.empty()) view = room.seen_from(true_T_base_sensor(), {});
+/// Depth of the furnished room without its arm at a cell.
+double true_depth_m(std::size_t cell) {
+  static const View view = [] {
+    Room room = Room::furnished();
+    room.has_arm = false;
+    room.noise_sigma_m = 0;
+    return room.seen_from(true_T_base_sensor(), {});
+  }();
   const int width = Room::camera().subsampled(kBackgroundStride).width;
   return view.depth.depth_m(kBackgroundStride * (static_cast<int>(cell) % width),
                             kBackgroundStride * (static_cast<int>(cell) / width));
@@ -31,7 +33,7 @@ TEST(BackgroundMap, KnowsWhatIsBehindTheRobotFromOtherPostures) {
     const BackgroundCell& cell = map.cells()[i];
     if (!cell.has_plane()) continue;
     behind += hidden[i];
-    wrong += std::abs(cell.depth_m - true_depth_m(room, i)) > 0.008;  // 4 m away the noise is more
+    wrong += std::abs(cell.depth_m - true_depth_m(i)) > 0.008;  // 4 m away the noise is more
   }
   EXPECT_GT(behind, 200U);
   EXPECT_EQ(wrong, 0U);
@@ -60,7 +62,7 @@ TEST(BackgroundMap, SomebodyInOneOfTheViewsIsNotLearnt) {
   map.learn(views, masks);
   for (std::size_t i = 0; i < map.cells().size(); ++i)
     if (map.cells()[i].has_plane()) {
-      EXPECT_NEAR(map.cells()[i].depth_m, true_depth_m(room, i), 0.012) << i;
+      EXPECT_NEAR(map.cells()[i].depth_m, true_depth_m(i), 0.012) << i;
     }
 }
 
@@ -117,7 +119,7 @@ TEST(BackgroundMap, MoreFramesMakeItBetterUpToALimit) {
     double squares = 0, count = 0;
     for (std::size_t i = 0; i < map.cells().size(); ++i)
       if (map.cells()[i].has_plane()) {
-        squares += std::pow(map.cells()[i].depth_m - true_depth_m(room, i), 2);
+        squares += std::pow(map.cells()[i].depth_m - true_depth_m(i), 2);
         ++count;
       }
     return std::sqrt(squares / count);
@@ -134,6 +136,18 @@ TEST(BackgroundMap, MoreFramesMakeItBetterUpToALimit) {
   }
   EXPECT_LT(rms(), 0.35 * first);
   EXPECT_EQ(map.cells()[5000].frames, BackgroundMap::kMostFrames);
+}
+
+TEST(BackgroundMap, WhatIsRecalledIsTheMeanOfItsViewsAndStaysSo) {
+  Room room = Room::furnished();
+  const BackgroundMap one = learnt(room, 6);
+  BackgroundMap recalled(Room::camera());
+  recalled.recall(one.depths_m(), 6);
+  EXPECT_NEAR(static_cast<double>(recalled.planes()), static_cast<double>(one.planes()), 1);
+  EXPECT_EQ(recalled.cells()[5000].frames, 3);
+  recalled.refine(std::vector<float>(one.cells().size(), 1.0F),
+                  std::vector<std::uint8_t>(one.cells().size(), 1));
+  EXPECT_EQ(recalled.depths_m(), one.depths_m());
 }
 
 }  // namespace
