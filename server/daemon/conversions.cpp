@@ -131,6 +131,7 @@ RobotMotionSettings motion_settings(const MotionConfig& motion) {
 SensorSetup sensor_setup(const std::string& id, const SensorConfig& sensor) {
   SensorSetup setup{id, sensor.camera, sensor.latency, sensor.guess_T_base_sensor, {}, sensor.mirror};
   setup.estimates_time_offset = sensor.time_offset == "estimate";
+  setup.rate_hz = sensor.fps;
   for (const auto& [name, p] : sensor.workspace) setup.workspace.push_back({name, {p[0], p[1], p[2]}});
   return setup;
 }

@@ -24,7 +24,7 @@ struct CalibrationJobs::Job {
   Clock::time_point deadline;                      ///< of collecting
   std::optional<Clock::time_point> patient_until;  ///< then what has been seen is enough
   Clock::time_point seen_at;                       ///< when the last of its views was taken
-  Background background;                           ///< that its views show, once it is accepted
+  Surroundings surroundings;                       ///< that its views show, once it is accepted
   std::atomic<bool> cancelled{false};
   bool is_ending = false;  ///< its end is being stored
 };

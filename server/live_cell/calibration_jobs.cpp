@@ -178,7 +178,7 @@ void CalibrationJobs::tell_of_drop(const std::string& id) const {
     const std::lock_guard lock(mutex_);
     if (const auto job = jobs_.find(id); job != jobs_.end()) report = report_of(*job->second);
   }
-  if (report) log_(*report);
+  if (report) log_(*report, {});
 }
 
 /// What the job is doing; the caller holds mutex_.

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "api/service/reports.hpp"
 #include "server/live_cell/live_sensor.hpp"
@@ -27,20 +28,34 @@ struct JobSettings {
   Clock::duration collect_timeout = std::chrono::minutes(10);
 };
 
+/// Against the pose that another sensor serves, from what both see of the cell.
+struct Objection {
+  LiveSensor* sensor;
+  std::string calibration_id;  ///< of that pose: another one is not meant
+  std::string reason;
+};
+
+/// What the views of an accepted calibration show besides the robot.
+struct Surroundings {
+  std::shared_ptr<const BackgroundMap> background;  ///< null where nobody watches for drift
+  std::vector<Objection> objections;                ///< which count once the pose is served
+};
+
 /// Runs calibrations: collects postures of any number of sensors at a time, computes one at a time on a
 /// thread of its own, stores every outcome, and makes an accepted one the current pose. Safe to call from any
 /// thread. Errors: api::ApiError.
 class CalibrationJobs {
  public:
-  using Background = std::shared_ptr<const BackgroundMap>;
   /// Called for a calibration that has succeeded and is stored; `current`: its pose is the one to serve now.
   /// `seen_at`: when its last view was taken.
-  using Publish = std::function<void(const api::CalibrationReport&, Clock::time_point seen_at, Background)>;
+  using Publish =
+      std::function<void(const api::CalibrationReport&, Clock::time_point seen_at, const Surroundings&)>;
   /// Looks at an accepted result, on the jobs' thread, before it is stored or published; may make it
-  /// uncertain. Returns what its views show around the robot; nullptr where nobody watches for drift.
+  /// uncertain.
   using Review =
-      std::function<Background(LiveSensor& sensor, std::span<const View> views, CalibrationResult&)>;
-  using Log = std::function<void(const api::CalibrationReport&)>;
+      std::function<Surroundings(LiveSensor& sensor, std::span<const View> views, CalibrationResult&)>;
+  /// `seen_at`: when the last view was taken that it was computed from, if it was.
+  using Log = std::function<void(const api::CalibrationReport&, Clock::time_point seen_at)>;
 
   /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
   /// collecting when it has lost postures.

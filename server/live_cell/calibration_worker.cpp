@@ -126,10 +126,10 @@ void CalibrationJobs::compute(const JobPointer& job) {
     end(job, JobStatus::cancelled, "Cancelled on request.");
     return;
   }
-  if (review_ && is_accepted(result)) job->background = review_(*job->sensor, views, result);
+  if (review_ && is_accepted(result)) job->surroundings = review_(*job->sensor, views, result);
   auto evidence = evidence_of(result, job->report.method, views);
   end_computed(job, std::move(result));
-  if (evidence) job->sensor->set_evidence(*std::move(evidence));
+  if (evidence) job->sensor->set_evidence(*std::move(evidence), job->seen_at);
 }
 
 CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<const View> views) {
@@ -176,8 +176,8 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   report.progress = 1;
   report.postures_seen = job->task->seen();
   if (store_end(report, job->sensor->basis()) && status == JobStatus::succeeded)
-    publish_(report, job->seen_at, std::move(job->background));
-  log_(report);
+    publish_(report, job->seen_at, job->surroundings);
+  log_(report, job->seen_at);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);
 }

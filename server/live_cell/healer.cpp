@@ -11,6 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kBusyRetry = 500ms;  // another calibration of the sensor is under way
 constexpr auto kLongWait = 1h;
+constexpr auto kCandidateLook = 1s;  // whether it still holds
 constexpr int kMovesWithoutPause = 4;
 constexpr int kEagerAttempts = 2;  // the quick one and the full one follow each other at once
 
@@ -28,8 +29,11 @@ const char* name_of(HealingMode mode) {
   return "off";
 }
 
-Healer::Healer(const HealerSettings& settings, Start start)
-    : settings_(settings), start_(std::move(start)), thread_([this] { run(); }) {}
+Healer::Healer(const HealerSettings& settings, Start start, LastMove last_move)
+    : settings_(settings),
+      start_(std::move(start)),
+      last_move_(std::move(last_move)),
+      thread_([this] { run(); }) {}
 
 Healer::~Healer() {
   request_stop();
@@ -63,7 +67,7 @@ void Healer::plan(Patient& patient, Clock::time_point now) const {
   patient.due = patient.moves <= kMovesWithoutPause ? now : now + pause_after(patient.moves);
 }
 
-void Healer::on_calibration(const api::CalibrationReport& calibration) {
+void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::time_point seen_at) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !is_starting_; });  // it may be the one that is just being started
   const auto found = patients_.find(calibration.sensor_id);
@@ -71,8 +75,10 @@ void Healer::on_calibration(const api::CalibrationReport& calibration) {
     return;
   Patient& patient = found->second;
   patient.calibration.clear();
-  if (calibration.status == api::JobStatus::succeeded && !calibration.activate)
+  if (calibration.status == api::JobStatus::succeeded && !calibration.activate) {
     patient.candidate = calibration.id;
+    patient.candidate_seen_at = seen_at;
+  }
   const bool eager = patient.attempts < kEagerAttempts && calibration.status == api::JobStatus::failed;
   patient.due = Clock::now() + (eager ? Clock::duration(0) : pause_after(patient.attempts));
   changed_.notify_all();
@@ -87,7 +93,13 @@ Clock::duration Healer::pause_after(int attempts) const {
 std::string Healer::candidate(const std::string& sensor_id) const {
   const std::lock_guard lock(mutex_);
   const auto found = patients_.find(sensor_id);
-  return found == patients_.end() ? std::string() : found->second.candidate;
+  if (found == patients_.end() || !has_candidate(sensor_id, found->second)) return {};
+  return found->second.candidate;
+}
+
+/// A candidate of where the sensor was before it moved once more is none.
+bool Healer::has_candidate(const std::string& sensor_id, const Patient& patient) const {
+  return !patient.candidate.empty() && patient.candidate_seen_at > last_move_(sensor_id);
 }
 
 void Healer::run() {
@@ -96,7 +108,11 @@ void Healer::run() {
     auto wake = Clock::now() + kLongWait;
     std::string next;
     for (const auto& [id, patient] : patients_) {
-      if (!patient.drifted || !patient.calibration.empty() || !patient.candidate.empty()) continue;
+      if (!patient.drifted || !patient.calibration.empty()) continue;
+      if (has_candidate(id, patient)) {
+        wake = std::min(wake, Clock::now() + kCandidateLook);
+        continue;
+      }
       if (patient.due <= Clock::now()) next = id;
       wake = std::min(wake, patient.due);
     }

@@ -35,15 +35,18 @@ class Healer {
   /// Starts a calibration of a sensor; may fail, because one is under way or the cell is stopping.
   using Start = std::function<Result<api::CalibrationReport>(const api::CalibrationRequest&)>;
 
-  Healer(const HealerSettings& settings, Start start);
+  /// When a sensor last moved or was away.
+  using LastMove = std::function<Clock::time_point(const std::string& sensor_id)>;
+
+  Healer(const HealerSettings& settings, Start start, LastMove last_move);
   ~Healer();
 
   void on_pose(const api::PoseReport& pose);
-  /// Of every calibration that has ended.
-  void on_calibration(const api::CalibrationReport& calibration);
+  /// Of every calibration that has ended; `seen_at`: when its last view was taken.
+  void on_calibration(const api::CalibrationReport& calibration, Clock::time_point seen_at);
 
   HealingMode mode() const { return settings_.mode; }
-  /// Id of a calibration of the sensor that waits to be activated; empty: none.
+  /// Id of a calibration of the sensor that waits to be activated; empty: none, or it has moved since.
   std::string candidate(const std::string& sensor_id) const;
 
   void request_stop();
@@ -53,6 +56,7 @@ class Healer {
     bool drifted = false;
     std::string calibration;  // under way; empty: none
     std::string candidate;
+    Clock::time_point candidate_seen_at;
     int attempts = 0;  ///< since it drifted
     int moves = 0;     ///< since it was last calm
     Clock::time_point last_move, due;
@@ -61,9 +65,11 @@ class Healer {
   void attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
   Clock::duration pause_after(int attempts) const;
   void plan(Patient& patient, Clock::time_point now) const;
+  bool has_candidate(const std::string& sensor_id, const Patient& patient) const;
 
   const HealerSettings settings_;
   const Start start_;
+  const LastMove last_move_;
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::map<std::string, Patient> patients_;

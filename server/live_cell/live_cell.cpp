@@ -24,16 +24,18 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       obstacle_watch_(virtual_cell),
       jobs_(
           store, estimator_.calibrate,
-          [this](const auto& calibration, auto seen_at, const auto& background) {
-            adopt(calibration, seen_at, background);
+          [this](const auto& calibration, auto seen_at, const auto& surroundings) {
+            adopt(calibration, seen_at, surroundings);
           },
-          [this](const auto& calibration) {
+          [this](const auto& calibration, auto seen_at) {
             if (log_.on_calibration) log_.on_calibration(calibration);
-            healer_.on_calibration(calibration);
+            healer_.on_calibration(calibration, seen_at);
           },
           settings_.jobs,
           [this](auto& sensor, auto views, auto& result) { return review(sensor, views, result); }),
-      healer_(settings_.healing, [this](const auto& request) { return start_calibration(request); }) {}
+      healer_(
+          settings_.healing, [this](const auto& request) { return start_calibration(request); },
+          [this](const auto& sensor_id) { return entries_.at(sensor_id)->sensor->moved_at(); }) {}
 
 LiveCell::~LiveCell() {
   request_stop();
@@ -73,38 +75,42 @@ void LiveCell::restore(const CurrentCalibration& stored, const LiveSensor& senso
 }
 
 void LiveCell::hear_of_pose(const api::PoseReport& pose) {
-  if (pose.state == api::PoseState::drifted && pose.known) store_drift(pose);
+  if (pose.state == api::PoseState::drifted && pose.known)
+    store_drift(pose.sensor_id, pose.known->calibration_id);
   if (log_.on_pose) log_.on_pose(pose);
   healer_.on_pose(pose);
 }
 
 /// Where this cannot be stored, the pose is drifted all the same, until a restart.
-void LiveCell::store_drift(const api::PoseReport& pose) {
-  const auto stored = store_.add_drift(pose.known->calibration_id);
+void LiveCell::store_drift(const std::string& sensor_id, const std::string& calibration_id) {
+  const auto stored = store_.add_drift(calibration_id);
   if (stored || !log_.on_error) return;
-  log_.on_error(
-      "sensor " + pose.sensor_id + ": that the pose of calibration " + pose.known->calibration_id +
-      " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
+  log_.on_error("sensor " + sensor_id + ": that the pose of calibration " + calibration_id +
+                " has drifted could not be stored, and will not be known after a restart: " +
+                stored.error().message());
 }
 
 std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {
   if (!estimator_.make_watch) return nullptr;
-  return std::make_unique<DriftMonitor>(estimator_.make_watch(setup.camera));
+  return std::make_unique<DriftMonitor>(estimator_.make_watch(setup.camera, setup.rate_hz));
 }
 
 /// The background is stored so that a sensor that is moved while nobody watches is found out after a
 /// restart, too; also that of a calibration that waits to be activated.
 void LiveCell::adopt(const api::CalibrationReport& calibration, Clock::time_point seen_at,
-                     const CalibrationJobs::Background& background) {
-  if (calibration.current) publish(calibration, {seen_at, false, {}}, background);
-  if (!background) return;
-  const auto stored = store_.add_background(calibration.id, background->depths_m());
+                     const Surroundings& surroundings) {
+  if (calibration.current) {
+    publish(calibration, {seen_at, false, {}}, surroundings.background);
+    for (const Objection& objection : surroundings.objections) withhold(objection);
+  }
+  if (!surroundings.background) return;
+  const auto stored = store_.add_background(calibration.id, surroundings.background->depths_m());
   if (!stored && log_.on_error)
     log_.on_error("the background of calibration " + calibration.id +
                   " could not be stored: " + stored.error().message());
 }
 
-CalibrationJobs::Background LiveCell::stored_background(const api::CalibrationReport& calibration) {
+std::shared_ptr<const BackgroundMap> LiveCell::stored_background(const api::CalibrationReport& calibration) {
   const auto entry = entries_.find(calibration.sensor_id);
   const auto depth_m = store_.background(calibration.id);
   if (entry == entries_.end() || !depth_m || !*depth_m) return nullptr;
@@ -129,10 +135,14 @@ void LiveCell::request_stop() {
   jobs_.request_stop();
 }
 
+/// Two calibrations may be made current at once; then the one that lost in the store is not served.
 void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-                       CalibrationJobs::Background background) {
+                       std::shared_ptr<const BackgroundMap> background) {
   const auto entry = entries_.find(calibration.sensor_id);
   if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
+  const std::lock_guard lock(publishing_);
+  const auto current = store_.current(calibration.sensor_id);
+  if (current && *current && (*current)->calibration.id != calibration.id) return;
   entry->second->sensor->set_pose(
       {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin,
       std::move(background));
@@ -235,8 +245,10 @@ Estimator core_estimator(const VirtualCell& cell, const DriftSettings& drift) {
   estimator.make_time_offset = [&cell](const CameraModel& camera) {
     return std::make_unique<TimeOffsetEstimator>(cell, camera);
   };
-  estimator.make_watch = [&cell, drift](const CameraModel& camera) {
-    return std::make_unique<DriftWatch>(cell, camera, drift);
+  estimator.make_watch = [&cell, drift](const CameraModel& camera, double rate_hz) {
+    auto settings = drift;
+    settings.shift.rate_hz = rate_hz;
+    return std::make_unique<DriftWatch>(cell, camera, settings);
   };
   return estimator;
 }

@@ -27,7 +27,7 @@ struct Estimator {
   CalibrateFunction calibrate;
   std::function<CheckFunction(const CameraModel&)> make_check;  ///< one for each sensor
   /// One for each sensor; unset: poses are checked against the robot alone.
-  std::function<std::unique_ptr<DriftWatch>(const CameraModel&)> make_watch = {};
+  std::function<std::unique_ptr<DriftWatch>(const CameraModel&, double rate_hz)> make_watch = {};
   /// One for each sensor that wants it; unset: time offsets are not estimated.
   std::function<std::unique_ptr<TimeOffsetEstimator>(const CameraModel&)> make_time_offset = {};
 };
@@ -48,7 +48,7 @@ struct LiveCellSettings {
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
 struct CellLog {
-  CalibrationJobs::Log on_calibration;                  ///< see CalibrationJobs
+  std::function<void(const api::CalibrationReport&)> on_calibration;  ///< see CalibrationJobs::Log
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
   std::function<void(const std::string&)> on_error;     ///< what went wrong and was asked for by nobody
   RobotMotions::Log on_motion = [](const auto&, bool) {};
@@ -62,6 +62,7 @@ struct SensorSetup {
   std::vector<WorkspacePoint> workspace = {};  ///< where its calibrations tell their predicted error
   bool mirror = false;                         ///< its rows are flipped before anybody sees them
   bool estimates_time_offset = true;
+  double rate_hz = 30;  ///< at which it delivers frames
 };
 
 /// The cell: robot, sensors, their poses and calibrations, behind the port of the HTTP interface.
@@ -120,17 +121,16 @@ class LiveCell : public api::CellService {
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
   void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
-               CalibrationJobs::Background background);
+               std::shared_ptr<const BackgroundMap> background);
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);
-  void store_drift(const api::PoseReport& pose);
+  void store_drift(const std::string& sensor_id, const std::string& calibration_id);
+  void withhold(const Objection& objection);
   std::unique_ptr<DriftMonitor> make_monitor(const SensorSetup& setup);
   void adopt(const api::CalibrationReport& calibration, Clock::time_point seen_at,
-             const CalibrationJobs::Background& background);
-  CalibrationJobs::Background stored_background(const api::CalibrationReport& calibration);
-  CalibrationJobs::Background review(LiveSensor& sensor, std::span<const View> views,
-                                     CalibrationResult& result);
-  void compare_with_others(LiveSensor& sensor, const BackgroundMap& background, CalibrationResult& result);
+             const Surroundings& surroundings);
+  std::shared_ptr<const BackgroundMap> stored_background(const api::CalibrationReport& calibration);
+  Surroundings review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   api::SensorReport report_of(const Entry& entry) const;
 
@@ -148,6 +148,7 @@ class LiveCell : public api::CellService {
   mutable CloudMerger cloud_merger_;
   mutable ObstacleWatch obstacle_watch_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
+  std::mutex publishing_;  // what is served last is what the store calls current
   CalibrationJobs jobs_;                                                // its thread uses the others
   Healer healer_;                                                       // last: its thread uses jobs_
 };

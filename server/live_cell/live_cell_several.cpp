@@ -30,27 +30,22 @@ std::vector<api::SensorPair> LiveCell::cross_checks() const {
   return compare_pairs(sensors);
 }
 
-CalibrationJobs::Background LiveCell::review(LiveSensor& sensor, std::span<const View> views,
-                                             CalibrationResult& result) {
-  if (!estimator_.make_watch) return nullptr;
+Surroundings LiveCell::review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result) {
+  if (!estimator_.make_watch) return {};
   RobotMask robot(virtual_cell_, sensor.camera());
   auto background = std::make_shared<const BackgroundMap>(
       learn_background(robot, sensor.camera(), views, *result.T_base_sensor));
-  compare_with_others(sensor, *background, result);
-  return background;
-}
-
-/// A pose that a better one contradicts is served no longer, and does not come back with a restart.
-void LiveCell::compare_with_others(LiveSensor& sensor, const BackgroundMap& background,
-                                   CalibrationResult& result) {
   std::vector<LiveSensor*> others;
   for (const auto& [id, entry] : entries_)
     if (entry->sensor.get() != &sensor) others.push_back(entry->sensor.get());
-  review_against(others, sensor, background, result, [this](LiveSensor& weaker, const std::string& reason) {
-    const auto pose = weaker.pose();
-    weaker.withhold(reason);
-    if (pose.known) store_drift(pose);
-  });
+  auto objections = review_against(others, sensor, *background, result);
+  return {std::move(background), std::move(objections)};
+}
+
+/// A pose that a better one contradicts is served no longer, and does not come back with a restart.
+void LiveCell::withhold(const Objection& objection) {
+  if (objection.sensor->withhold(objection.calibration_id, objection.reason))
+    store_drift(objection.sensor->id(), objection.calibration_id);
 }
 
 Result<api::CellCalibrations> LiveCell::start_calibrations(const api::CellCalibrationRequest& request) {

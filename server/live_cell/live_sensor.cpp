@@ -258,11 +258,12 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   if (origin.seen_at && *origin.seen_at <= std::max(lost_at_, moved_at_)) watch_.on_sensor_lost();
 }
 
-void LiveSensor::withhold(const std::string& objection) {
+bool LiveSensor::withhold(const std::string& calibration_id, const std::string& objection) {
   const std::lock_guard lock(mutex_);
-  if (!known_) return;
+  if (!known_ || known_->calibration_id != calibration_id) return false;
   watch_.set_withheld(objection);
   evidence_.reset();
+  return true;
 }
 
 std::optional<Pose> LiveSensor::plausible_pose() const {
@@ -270,9 +271,14 @@ std::optional<Pose> LiveSensor::plausible_pose() const {
   return known_ && watch_.is_plausible() ? known_->result.T_base_sensor : std::nullopt;
 }
 
-void LiveSensor::set_evidence(PoseEvidence evidence) {
+void LiveSensor::set_evidence(PoseEvidence evidence, Clock::time_point seen_at) {
   const std::lock_guard lock(mutex_);
-  evidence_ = std::move(evidence);
+  if (seen_at > std::max(lost_at_, moved_at_)) evidence_ = std::move(evidence);
+}
+
+Clock::time_point LiveSensor::moved_at() const {
+  const std::lock_guard lock(mutex_);
+  return std::max(lost_at_, moved_at_);
 }
 
 std::optional<PoseEvidence> LiveSensor::evidence() const {

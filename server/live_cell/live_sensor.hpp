@@ -82,14 +82,15 @@ class LiveSensor {
                 std::shared_ptr<const BackgroundMap> background = nullptr);
 
   /// Something else speaks against the pose being served: until another one takes over it is not valid,
-  /// whatever its checks say.
-  void withhold(const std::string& objection);
+  /// whatever its checks say. False: the pose being served is not that calibration's.
+  bool withhold(const std::string& calibration_id, const std::string& objection);
 
   /// The pose being served, as a start for the next calibration: nothing while it is known to be wrong.
   std::optional<Pose> plausible_pose() const;
 
   /// What the newest calibration has found; counts until another pose takes over, or the sensor has drifted.
-  void set_evidence(PoseEvidence evidence);
+  /// `seen_at`: of the last view; what was seen before the sensor moved or was away is none.
+  void set_evidence(PoseEvidence evidence, Clock::time_point seen_at);
   /// Without a calibration since the start: of the pose being served, unless it is known to be wrong.
   std::optional<PoseEvidence> evidence() const;
 
@@ -101,6 +102,8 @@ class LiveSensor {
 
   api::PoseReport pose() const;
   api::DriftReport drift() const;
+  /// When it was last found to move, or was away: what was seen before is not known to hold now.
+  Clock::time_point moved_at() const;
   /// Where a sensor that has moved is now, as far as its background tells.
   std::optional<Pose> seen_pose() const;
   /// See DriftMonitor.

@@ -63,8 +63,9 @@ std::vector<api::SensorPair> compare_pairs(std::span<const LiveSensor* const> se
   return pairs;
 }
 
-void review_against(std::span<LiveSensor* const> others, const LiveSensor& sensor,
-                    const BackgroundMap& background, CalibrationResult& result, const Distrust& distrust) {
+std::vector<Objection> review_against(std::span<LiveSensor* const> others, const LiveSensor& sensor,
+                                      const BackgroundMap& background, CalibrationResult& result) {
+  std::vector<Objection> objections;
   for (LiveSensor* other : others) {
     const auto known = known_now(*other);
     if (!known) continue;
@@ -76,8 +77,11 @@ void review_against(std::span<LiveSensor* const> others, const LiveSensor& senso
     if (variance_at(mine, check.middle_base) >= variance_at(checked(*known), check.middle_base))
       result.verdict = Verdict::uncertain;
     else
-      distrust(*other, text);
+      objections.push_back({other, known->pose.known->calibration_id, text});
   }
+  // Who is not sure of himself does not accuse.
+  if (result.verdict != Verdict::accepted) objections.clear();
+  return objections;
 }
 
 }  // namespace calibrd

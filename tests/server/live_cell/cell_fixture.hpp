@@ -116,7 +116,7 @@ class CellFixture : public ::testing::Test {
       };
     };
     if (watches_)
-      estimator.make_watch = [this](const CameraModel& camera) {
+      estimator.make_watch = [this](const CameraModel& camera, double) {
         return std::make_unique<DriftWatch>(*virtual_cell_, camera, DriftSettings{});
       };
     return estimator;

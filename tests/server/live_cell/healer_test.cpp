@@ -19,7 +19,8 @@ class Healing : public ::testing::Test {
     settings.mode = mode;
     settings.postures = 2;
     settings.cooldown = cooldown;
-    healer_ = std::make_unique<Healer>(settings, [this](const auto& request) { return start(request); });
+    healer_ = std::make_unique<Healer>(settings, [this](const auto& request) { return start(request); },
+                                       [this](const auto&) { return last_move_.load(); });
   }
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request) {
     const std::lock_guard lock(mutex_);
@@ -50,13 +51,14 @@ class Healing : public ::testing::Test {
     report.status = status;
     report.activate = activate;
     report.finished = std::chrono::system_clock::now();
-    healer_->on_calibration(report);
+    healer_->on_calibration(report, Clock::now());
   }
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<api::CalibrationRequest> requests_;
   int busy_ = 0;
+  std::atomic<Clock::time_point> last_move_{Clock::time_point()};
   std::unique_ptr<Healer> healer_;  // last: its thread uses the others
 };
 
@@ -103,6 +105,18 @@ TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {
   EXPECT_FALSE(wait_for(2, 200ms));
   set_state(api::PoseState::calibrated);
   EXPECT_EQ(healer_->candidate("eye"), "");
+}
+
+TEST_F(Healing, ACandidateOfBeforeAnotherMoveIsNoneAndAnotherIsFound) {
+  begin(HealingMode::ask, 0ms);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::succeeded, false);
+  EXPECT_EQ(healer_->candidate("eye"), "c1");
+  last_move_ = Clock::now();
+  EXPECT_EQ(healer_->candidate("eye"), "");
+  ASSERT_TRUE(wait_for(2));
+  EXPECT_FALSE(requests_[1].activate);
 }
 
 TEST_F(Healing, OffDoesNothing) {
