@@ -23,7 +23,10 @@ constexpr double kModelTurn_rad = 0.0012;
 constexpr double kMaxShiftSigmas = 4;
 /// Something this much in front of the robot hides it, and says nothing about the sensor's pose.
 constexpr double kInFront_m = 0.05;
-constexpr double kMostHidden = 0.1;  // share of the robot, for a check that is to speak against the pose
+/// Share of the robot: beyond the first its rim is left out, beyond the second too little is left to speak
+/// against the pose.
+constexpr double kRimHidden = 0.1, kMostHidden = 0.5;
+constexpr int kRim_px = 8;
 
 }  // namespace
 
@@ -42,6 +45,7 @@ Eigen::Vector3d PoseChecker::compare(const View& view, const Pose& T_base_sensor
   cell_.set_joints(view.joint_positions_rad);
   cell_.measure(camera_, T_base_sensor, prediction_);
   std::vector<double> residuals;
+  hidden_.clear();
   Eigen::Vector3d middle_sensor = Eigen::Vector3d::Zero();
   for (int y = 0; y < camera_.height; y += 2) {
     for (int x = 0; x < camera_.width; x += 2) {
@@ -52,6 +56,7 @@ Eigen::Vector3d PoseChecker::compare(const View& view, const Pose& T_base_sensor
       const double residual = view.depth.depth_m(x, y) - correction.measured(prediction_.depth_m[i]);
       if (residual < -kInFront_m) {
         ++check.hidden_pixels;
+        hidden_.push_back({x, y});
         continue;
       }
       residuals.push_back(residual);
@@ -75,7 +80,10 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   if (check.robot_pixels < kMinPixels) return check;
   check.enough_evidence = true;
   if (check.agreement < kMinAgreement) return check;
-  const auto tracked = tracker_.update(view, T_base_sensor, correction);
+  const double hidden = static_cast<double>(check.hidden_pixels) /
+                        static_cast<double>(check.hidden_pixels + check.robot_pixels);
+  const auto tracked =
+      tracker_.update(hidden > kRimHidden ? without_rim(view) : view, T_base_sensor, correction);
   if (!tracked) return check;  // too few pixels agree to within centimetres: the pose does not explain them
   const Matrix6d move = shift_of_point(middle_base - T_base_sensor.translation());
   const Vector6d shift = move * tracked->innovation;
@@ -93,11 +101,20 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   check.shift_m = shift.tail<3>().norm();
   check.shift_sigmas = std::sqrt(shift.dot(covariance.ldlt().solve(shift)));
   check.agrees = check.shift_sigmas < kMaxShiftSigmas;  // false when it is not a number
-  // At the rim of what hides part of the robot depths are of neither: that may only speak for the pose.
-  const auto hidden = static_cast<double>(check.hidden_pixels);
-  if (!check.agrees && hidden > kMostHidden * (hidden + static_cast<double>(check.robot_pixels)))
-    check.enough_evidence = false;
+  if (!check.agrees && hidden > kMostHidden) check.enough_evidence = false;
   return check;
+}
+
+/// At the rim of what hides part of the robot depths are of neither, or of both.
+View PoseChecker::without_rim(const View& view) const {
+  View rest = view;
+  for (const auto& [x, y] : hidden_) {
+    const int left = std::max(0, x - kRim_px), right = std::min(camera_.width - 1, x + kRim_px);
+    for (int v = std::max(0, y - kRim_px); v <= std::min(camera_.height - 1, y + kRim_px); v += 1)
+      std::fill_n(rest.depth.raw.begin() + static_cast<std::ptrdiff_t>(rest.depth.index(left, v)),
+                  right - left + 1, std::uint16_t{0});
+  }
+  return rest;
 }
 
 }  // namespace calibrd

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <utility>
+#include <vector>
+
 #include "core/calibration/calibrate.hpp"
 #include "core/calibration/track.hpp"
 #include "core/virtual_cell/virtual_cell.hpp"
@@ -47,11 +50,13 @@ class PoseChecker {
   /// Where the robot's visible surface lies on average, base frame.
   Eigen::Vector3d compare(const View& view, const Pose& T_base_sensor, const DepthCorrection& correction,
                           PoseCheck& check);
+  View without_rim(const View& view) const;
 
   CameraModel camera_;
   VirtualCell cell_;
   PoseTracker tracker_;
   VirtualMeasurement prediction_;
+  std::vector<std::pair<int, int>> hidden_;  // pixels of the last comparison
 };
 
 }  // namespace calibrd

@@ -85,9 +85,9 @@ void LiveCell::hear_of_pose(const api::PoseReport& pose) {
 void LiveCell::store_drift(const std::string& sensor_id, const std::string& calibration_id) {
   const auto stored = store_.add_drift(calibration_id);
   if (stored || !log_.on_error) return;
-  log_.on_error("sensor " + sensor_id + ": that the pose of calibration " + calibration_id +
-                " has drifted could not be stored, and will not be known after a restart: " +
-                stored.error().message());
+  log_.on_error(
+      "sensor " + sensor_id + ": that the pose of calibration " + calibration_id +
+      " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
 }
 
 std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {

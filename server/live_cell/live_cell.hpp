@@ -149,8 +149,8 @@ class LiveCell : public api::CellService {
   mutable ObstacleWatch obstacle_watch_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started
   std::mutex publishing_;  // what is served last is what the store calls current
-  CalibrationJobs jobs_;                                                // its thread uses the others
-  Healer healer_;                                                       // last: its thread uses jobs_
+  CalibrationJobs jobs_;   // its thread uses the others
+  Healer healer_;          // last: its thread uses jobs_
 };
 
 /// core's estimator for this robot. The returned functions refer to `cell`.

@@ -108,17 +108,40 @@ TEST(CheckPose, APoseThatIsKnownBadlyIsNotTakenForExact) {
   EXPECT_FALSE(checker.check(view, far, {}, covariance).agrees);
 }
 
-TEST(CheckPose, ARobotThatIsPartlyHiddenSpeaksAgainstNoPose) {
-  View view = render_views(1)[0];
+/// Something 0.6 m away hides the left of the picture up to column `to`; depths at its rim are of neither.
+View hidden_up_to(View view, int to) {
+  for (int y = 0; y < view.depth.height; ++y)
+    for (int x = 0; x < std::min(to + 5, view.depth.width); ++x) {
+      auto& raw = view.depth.raw[view.depth.index(x, y)];
+      raw = x < to ? std::uint16_t{600} : static_cast<std::uint16_t>(std::max(0, raw - 30));
+    }
+  return view;
+}
+
+TEST(CheckPose, ARobotThatIsPartlyHiddenSpeaksByWhatIsWellClearOfTheRim) {
+  const View view = render_views(1)[0];
   VirtualCell cell(test_arm());
   PoseChecker checker(cell, ideal_kinect2());
   const Pose off = Eigen::Translation3d(0, 0.008, 0) * true_T_base_sensor();
-  const PoseCheck whole = checker.check(view, off, {});
-  EXPECT_TRUE(whole.enough_evidence && !whole.agrees);
-  for (int y = 0; y < view.depth.height; ++y)
-    for (int x = 0; x < view.depth.width / 2; ++x) view.depth.raw[view.depth.index(x, y)] = 600;
-  const PoseCheck half = checker.check(view, off, {});
-  EXPECT_TRUE(half.agrees || !half.enough_evidence) << half.shift_sigmas;
+  int part = 0, most = 0;
+  for (int to = 0; to < view.depth.width; to += 16) {
+    const View half = hidden_up_to(view, to);
+    const PoseCheck right = checker.check(half, true_T_base_sensor(), {}),
+                    wrong = checker.check(half, off, {});
+    EXPECT_TRUE(right.agrees || !right.enough_evidence) << to << ": " << right.shift_sigmas;
+    const double hidden = static_cast<double>(wrong.hidden_pixels) /
+                          static_cast<double>(wrong.hidden_pixels + wrong.robot_pixels + 1);
+    if (hidden > 0.15 && hidden < 0.45) {
+      ++part;
+      EXPECT_TRUE(wrong.enough_evidence && !wrong.agrees) << to << ": " << wrong.shift_sigmas;
+    }
+    if (hidden > 0.55) {
+      ++most;
+      EXPECT_TRUE(wrong.agrees || !wrong.enough_evidence) << to << ": " << wrong.shift_sigmas;
+    }
+  }
+  EXPECT_GT(part, 0);
+  EXPECT_GT(most, 0);
 }
 
 TEST(CheckPose, TakesTheKnownRangeOffsetIntoAccount) {

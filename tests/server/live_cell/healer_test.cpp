@@ -19,8 +19,9 @@ class Healing : public ::testing::Test {
     settings.mode = mode;
     settings.postures = 2;
     settings.cooldown = cooldown;
-    healer_ = std::make_unique<Healer>(settings, [this](const auto& request) { return start(request); },
-                                       [this](const auto&) { return last_move_.load(); });
+    healer_ = std::make_unique<Healer>(
+        settings, [this](const auto& request) { return start(request); },
+        [this](const auto&) { return last_move_.load(); });
   }
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request) {
     const std::lock_guard lock(mutex_);
