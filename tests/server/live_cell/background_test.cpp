@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // What a calibration saw around the robot is learnt once, and kept with it.
+#include <future>
+
 #include "tests/server/live_cell/cell_fixture.hpp"
 
 namespace calibrd {
@@ -53,6 +55,28 @@ TEST_F(Background, IsAskedBeforeTheRobotOnceTheDaemonIsBack) {
   const auto frames = frames_sent_;
   watch_until([&] { return checks_ > 0; });
   EXPECT_GE(frames_sent_ - frames, 15U);
+}
+
+TEST_F(Background, APoseFoundFromViewsOfBeforeAMoveIsNotValidWhenItIsComputed) {
+  calibrate();
+  repeat_until([&] { is_known(); },
+               [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
+  std::promise<void> moved;
+  on_calibrate_ = [until = moved.get_future().share()](auto views, const auto&) {
+    until.wait();
+    return accepted(views);
+  };
+  const auto id = start_job(1)->id;
+  watch_until([&] { return job(id).status == api::JobStatus::running; });
+  agrees_ = false;
+  wall_mm_ = 1700;
+  watch_until([&] { return cell_->drift("eye")->now.verdict == DriftVerdict::sensor_moved; });
+  moved.set_value();
+  wait_for([&] { return job(id).finished.has_value(); });
+  EXPECT_EQ(job(id).status, api::JobStatus::succeeded);
+  EXPECT_EQ(pose().known->calibration_id, id);
+  EXPECT_FALSE(pose().valid);
+  EXPECT_EQ(pose().state, api::PoseState::unverified);
 }
 
 TEST_F(Background, OfARejectedCalibrationIsNone) {

@@ -139,13 +139,14 @@ class CellFixture : public ::testing::Test {
     events_.on_joints({0, {turn, bend, 0, 0, 0, 0, 0, 0, 0, 0}, {}, ++joints_sent_, now});
   }
 
-  /// A frame of this moment minus 10 ms, every pixel 1.5 m away.
+  /// A frame of this moment minus 10 ms, every pixel as far away as the wall.
   void show() {
     DepthFrame frame;
-    frame.depth = {camera_.width, camera_.height, 0.001, std::vector<std::uint16_t>(pixels(), 1500)};
+    frame.depth = {camera_.width, camera_.height, 0.001, std::vector<std::uint16_t>(pixels(), wall_mm_)};
     frame.image = GreyImage{camera_.width, camera_.height, std::vector<std::uint16_t>(pixels(), 7)};
     frame.sequence = ++frames_sent_;
-    frame.depth.raw.back() = static_cast<std::uint16_t>(1400 + frames_sent_ % 100);  // a sensor's noise
+    frame.depth.raw.back() =
+        static_cast<std::uint16_t>(wall_mm_ - 100 + frames_sent_ % 100);  // a sensor's noise
     frame.stamp = Clock::now() - std::chrono::milliseconds(10);
     const std::lock_guard lock(feed_->mutex);
     feed_->frames.push_back(std::move(frame));
@@ -230,6 +231,7 @@ class CellFixture : public ::testing::Test {
   CameraModel camera_{32, 24, 30, 30, 15.5, 11.5, {0, 0, 0, 0, 0}};
   std::optional<Pose> guess_ = Pose::Identity();
   bool mirror_ = false, watches_ = false;
+  std::uint16_t wall_mm_ = 1500;
   LiveCellSettings settings_ = [] {
     LiveCellSettings settings;
     settings.watch.check_period = std::chrono::milliseconds(5);
