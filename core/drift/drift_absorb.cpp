@@ -16,16 +16,6 @@ constexpr float kLeastMeanFrames = 20;
 
 }  // namespace
 
-/// Links that end the arm, or arms.
-std::vector<std::size_t> DriftWatch::tips_of(const RobotModel& model) {
-  std::vector<bool> ends(model.links().size(), true);
-  for (const Joint& joint : model.joints()) ends[static_cast<std::size_t>(joint.parent_link)] = false;
-  std::vector<std::size_t> tips;
-  for (std::size_t l = 0; l < ends.size(); ++l)
-    if (ends[l] && model.links()[l].parent_joint >= 0) tips.push_back(l);
-  return tips;
-}
-
 /// What the robot carries moves with the end of its arm.
 void DriftWatch::mark_carried() {
   carried_.assign(map_.cells().size(), 0);

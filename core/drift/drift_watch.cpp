@@ -37,7 +37,7 @@ DriftWatch::DriftWatch(const VirtualCell& cell, const CameraModel& camera, const
     : settings_(settings),
       camera_(camera),
       robot_(cell, camera),
-      tips_(tips_of(cell.robot())),
+      tips_(cell.robot().tip_links()),
       map_(camera),
       matcher_(map_),
       scene_(settings.scene, map_.grid().width),

@@ -75,7 +75,6 @@ class DriftWatch {
   void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
-  static std::vector<std::size_t> tips_of(const RobotModel& model);
   void mark_carried();
   void refine(const BackgroundObservation& observation, double now_s);
   void absorb(double now_s);

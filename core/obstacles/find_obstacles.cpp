@@ -124,12 +124,8 @@ void ObstacleFinder::measure_distance(const Frame& frame, const std::vector<std:
 }
 
 bool ObstacleFinder::is_near_tool(const std::vector<Eigen::Vector3d>& points_base) const {
-  const RobotModel& model = robot_.cell().robot();
-  std::vector<bool> is_end(model.links().size(), true);
-  for (const Joint& joint : model.joints()) is_end[static_cast<std::size_t>(joint.parent_link)] = false;
   const double reach = settings_.tool_reach_m * settings_.tool_reach_m;
-  for (std::size_t link = 0; link < is_end.size(); ++link) {
-    if (!is_end[link] || model.links()[link].parent_joint < 0) continue;
+  for (const std::size_t link : robot_.cell().robot().tip_links()) {
     const Eigen::Vector3d tip_base = robot_.cell().link_poses()[link].translation();
     if (std::ranges::all_of(points_base, [&](const auto& p) { return (p - tip_base).squaredNorm() < reach; }))
       return true;

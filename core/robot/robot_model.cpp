@@ -35,6 +35,15 @@ Result<RobotModel> RobotModel::load(const std::filesystem::path& urdf, const Rob
   return RobotModelBuilder(**source, urdf, options).build();
 }
 
+std::vector<std::size_t> RobotModel::tip_links() const {
+  std::vector<bool> is_end(links_.size(), true);
+  for (const Joint& joint : joints_) is_end[static_cast<std::size_t>(joint.parent_link)] = false;
+  std::vector<std::size_t> tips;
+  for (std::size_t link = 0; link < links_.size(); ++link)
+    if (is_end[link] && links_[link].parent_joint >= 0) tips.push_back(link);
+  return tips;
+}
+
 std::vector<Pose> RobotModel::forward_kinematics(std::span<const double> positions) const {
   std::vector<Pose> T_base_link(links_.size());
   forward_kinematics_into(positions, T_base_link);

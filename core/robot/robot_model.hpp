@@ -78,6 +78,8 @@ class RobotModel {
   const std::string& base_link() const { return links_[static_cast<std::size_t>(base_link_)].name; }
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
+  /// The links that end the arm, or the arms, as indices.
+  std::vector<std::size_t> tip_links() const;
   /// What moves each of joints().
   const std::vector<JointDrive>& drives() const { return drives_; }
 

@@ -3,12 +3,10 @@
 #include "server/live_cell/calibration_jobs.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <ctime>
 
 #include "api/problem/api_error.hpp"
 #include "server/live_cell/calibration_job.hpp"
+#include "server/live_cell/dated_id.hpp"
 
 namespace calibrd {
 
@@ -102,7 +100,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   // A robot at work must not be waited for while there is no pose.
   collector.moving_views = collector.moving_views || request.after_move;
   collector.postures = std::max(collector.postures, least_postures(guess));
-  job->report.id = new_id();
+  job->report.id = dated_id(std::chrono::system_clock::now(), random_);
   job->report.sensor_id = sensor.id();
   job->report.created = std::chrono::system_clock::now();
   job->report.method = request.method;
@@ -121,18 +119,6 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
       },
       [this, id = job->report.id] { tell_of_drop(id); });
   return job;
-}
-
-/// Sorts by time, and does not repeat: "20260102T030405-1f2e3d".
-std::string CalibrationJobs::new_id() {
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> time{};
-  std::array<char, 64> id{};
-  std::strftime(time.data(), time.size(), "%Y%m%dT%H%M%S", &utc);
-  std::snprintf(id.data(), id.size(), "%s-%06x", time.data(), static_cast<unsigned>(random_() & 0xffffffU));
-  return id.data();
 }
 
 Result<CalibrationReport> CalibrationJobs::find(const std::string& id) const {

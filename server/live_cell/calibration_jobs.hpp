@@ -82,7 +82,6 @@ class CalibrationJobs {
   struct Job;
   using JobPointer = std::shared_ptr<Job>;
 
-  std::string new_id();
   Result<std::optional<api::CalibrationReport>> started_before(const api::CalibrationRequest& request) const;
   JobPointer make_job(const api::CalibrationRequest& request, LiveSensor& sensor,
                       const std::optional<Pose>& guess);

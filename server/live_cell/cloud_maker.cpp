@@ -3,6 +3,7 @@
 #include "server/live_cell/cloud_maker.hpp"
 
 #include "api/problem/api_error.hpp"
+#include "server/live_cell/sound_sighting.hpp"
 
 namespace calibrd {
 namespace {
@@ -10,17 +11,8 @@ namespace {
 using api::ApiError;
 using api::Cloud;
 
-/// A frame older than this is not what the sensor sees now.
-constexpr auto kFreshFrame = std::chrono::seconds(1);
-
 std::int64_t nanoseconds(Clock::time_point time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
-}
-
-Result<std::shared_ptr<const Sighting>> fresh_sighting(const LiveSensor& sensor) {
-  auto sighting = sensor.newest();
-  if (!sighting || Clock::now() - sighting->stamp > kFreshFrame) return fail(ApiError::no_frame, sensor.id());
-  return sighting;
 }
 
 Eigen::Vector3f point_at(const CameraModel& camera, int x, int y, double depth_m) {
@@ -71,10 +63,10 @@ Result<Cloud> CloudMaker::make(const api::CloudRequest& request, const LiveSenso
 
 Result<Cloud> CloudMaker::measured(const LiveSensor& sensor) const {
   const auto sighting = fresh_sighting(sensor);
-  if (!sighting) return sighting.error();
+  if (!sighting) return fail(ApiError::no_frame, sensor.id());
   Cloud cloud;
-  cloud.frame_stamp_ns = nanoseconds((*sighting)->exposed);
-  const auto& depth = (*sighting)->view.depth;
+  cloud.frame_stamp_ns = nanoseconds(sighting->exposed);
+  const auto& depth = sighting->view.depth;
   for (int y = 0; y < depth.height; ++y)
     for (int x = 0; x < depth.width; ++x)
       if (depth.raw[depth.index(x, y)] != 0)
@@ -102,14 +94,14 @@ Result<Cloud> CloudMaker::virtual_cloud(const LiveSensor& sensor, const Pose& T_
 Result<Cloud> CloudMaker::residual(const LiveSensor& sensor, const Pose& T_base_sensor,
                                    const DepthCorrection& correction) {
   const auto sighting = fresh_sighting(sensor);
-  if (!sighting) return sighting.error();
-  const auto& view = (*sighting)->view;
+  if (!sighting) return fail(ApiError::no_frame, sensor.id());
+  const auto& view = sighting->view;
   if (view.joint_positions_rad.empty())
     return fail(ApiError::joints_stale, "at the time of the newest frame");
   const auto& camera = sensor.camera();
   measure(camera, view.joint_positions_rad, T_base_sensor);
   Cloud cloud;
-  cloud.frame_stamp_ns = nanoseconds((*sighting)->exposed);
+  cloud.frame_stamp_ns = nanoseconds(sighting->exposed);
   cloud.joint_stamp_ns = cloud.frame_stamp_ns;  // interpolated at the frame's time
   cloud.joint_positions_rad = view.joint_positions_rad;
   std::size_t pixel = 0;

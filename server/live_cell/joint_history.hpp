@@ -17,7 +17,6 @@ class JointHistory {
 
   /// States not newer than the newest, or with another number of joints, start a new history or are ignored.
   void add(JointState state);
-  void clear() { states_.clear(); }
   /// A status of that moment. Unset: the controller does not know whether it moves.
   void note_status(Clock::time_point stamp, std::optional<bool> in_motion) {
     freeze_.on_status(stamp, in_motion);

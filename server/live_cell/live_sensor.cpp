@@ -177,8 +177,12 @@ void LiveSensor::watch(const Sighting& sighting) {
   has_moved_ = has_moved;
   if (has_moved) watch_.on_sensor_moved();
   if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
-  if (was_plausible && !watch_.is_plausible())
-    evidence_.reset();  // it was found where the sensor stood before
+  forget_evidence(was_plausible);
+}
+
+/// It was found where the sensor stood before.
+void LiveSensor::forget_evidence(bool was_plausible) {
+  if (was_plausible && !watch_.is_plausible()) evidence_.reset();
 }
 
 /// Views of before and after a move never come together, also while the sensor goes on moving.
@@ -219,8 +223,7 @@ void LiveSensor::check(const Sighting& sighting) {
   if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
   watch_.on_check(checked, sighting.stamp);  // not now: a check proves nothing of later than its frame
-  if (was_plausible && !watch_.is_plausible())
-    evidence_.reset();  // it was found where the sensor stood before
+  forget_evidence(was_plausible);
 }
 
 void LiveSensor::note(FrameVerdict verdict) {

@@ -123,6 +123,7 @@ class LiveSensor {
   void serve_tasks(const Sighting& sighting, bool usable);
   std::vector<std::shared_ptr<CollectTask>> open_tasks();
   void watch(const Sighting& sighting);
+  void forget_evidence(bool was_plausible);
   void notice_move();
   bool is_check_due(Clock::time_point now) const;
   void check(const Sighting& sighting);

@@ -3,13 +3,11 @@
 #include "server/live_cell/robot_motions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 
 #include "api/problem/api_error.hpp"
 #include "core/planning/posture_way.hpp"
+#include "server/live_cell/dated_id.hpp"
 
 namespace calibrd {
 
@@ -103,19 +101,11 @@ Result<MotionOrder> RobotMotions::make_order(const Postures& postures) const {
   return order;
 }
 
-/// The id sorts by time, and does not repeat: "m20260102T030405-1f2e3d".
 std::string RobotMotions::add_report(const api::MotionRequest& request, std::size_t postures) {
   const std::lock_guard lock(mutex_);
   MotionReport report;
   report.created = std::chrono::system_clock::now();
-  const auto now = std::chrono::system_clock::to_time_t(report.created);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> time{};
-  std::array<char, 64> id{};
-  std::strftime(time.data(), time.size(), "%Y%m%dT%H%M%S", &utc);
-  std::snprintf(id.data(), id.size(), "m%s-%06x", time.data(), static_cast<unsigned>(random_() & 0xffffffU));
-  report.id = id.data();
+  report.id = "m" + dated_id(report.created, random_);
   report.route = request.route;
   report.next_posture_of = request.next_posture_of;
   report.postures = static_cast<int>(postures);

@@ -12,13 +12,17 @@ constexpr auto kFreshFrame = std::chrono::seconds(1);
 
 }  // namespace
 
+std::shared_ptr<const Sighting> fresh_sighting(const LiveSensor& sensor) {
+  auto sighting = sensor.newest();
+  return sighting && Clock::now() - sighting->stamp <= kFreshFrame ? sighting : nullptr;
+}
+
 Result<SoundSighting> sound_sighting(const LiveSensor& sensor, bool needs_joints) {
   auto pose = sensor.pose();
   if (!pose.valid || !pose.known || !pose.known->result.T_base_sensor)
     return fail(api::ApiError::pose_not_valid, sensor.id() + ": " + pose.reason);
-  auto sighting = sensor.newest();
-  if (!sighting || Clock::now() - sighting->stamp > kFreshFrame)
-    return fail(api::ApiError::no_frame, sensor.id() + ": " + sensor.hindrance());
+  auto sighting = fresh_sighting(sensor);
+  if (!sighting) return fail(api::ApiError::no_frame, sensor.id() + ": " + sensor.hindrance());
   if (needs_joints && sighting->view.joint_positions_rad.empty())
     return fail(api::ApiError::joints_stale, sensor.id() + ": at the time of the newest frame");
   return SoundSighting{std::move(sighting), *std::move(pose.known)};

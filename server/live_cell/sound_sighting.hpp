@@ -6,6 +6,9 @@
 
 namespace calibrd {
 
+/// The newest frame; nothing when it is too old to be what the sensor sees now.
+std::shared_ptr<const Sighting> fresh_sighting(const LiveSensor& sensor);
+
 /// A frame of now and the valid pose it was seen from.
 struct SoundSighting {
   std::shared_ptr<const Sighting> sighting;
