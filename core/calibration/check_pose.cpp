@@ -23,7 +23,7 @@ constexpr double kModelTurn_rad = 0.0012;
 constexpr double kMaxShiftSigmas = 4;
 /// Something this much in front of the robot hides it, and says nothing about the sensor's pose.
 constexpr double kInFront_m = 0.05;
-/// Share of the robot: beyond the first its rim is left out, beyond the second too little is left to speak
+/// Share of the robot: beyond the first what lies at the rim is left out, beyond the second nothing speaks
 /// against the pose.
 constexpr double kRimHidden = 0.1, kMostHidden = 0.5;
 constexpr int kRim_px = 8;
@@ -78,13 +78,16 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   PoseCheck check;
   const Eigen::Vector3d middle_base = compare(view, T_base_sensor, correction, check);
   if (check.robot_pixels < kMinPixels) return check;
-  check.enough_evidence = true;
-  if (check.agreement < kMinAgreement) return check;
   const double hidden = static_cast<double>(check.hidden_pixels) /
                         static_cast<double>(check.hidden_pixels + check.robot_pixels);
+  check.enough_evidence = hidden <= kMostHidden;
+  if (check.agreement < kMinAgreement) return check;
   const auto tracked =
       tracker_.update(hidden > kRimHidden ? without_rim(view) : view, T_base_sensor, correction);
-  if (!tracked) return check;  // too few pixels agree to within centimetres: the pose does not explain them
+  if (!tracked) {  // too few pixels agree to within centimetres: the pose does not explain them, ...
+    if (hidden > kRimHidden) check.enough_evidence = false;  // ... or a fence leaves nothing but rims
+    return check;
+  }
   const Matrix6d move = shift_of_point(middle_base - T_base_sensor.translation());
   const Vector6d shift = move * tracked->innovation;
   // A sensor whose residuals scatter more than noise explains is wrong by whole patches, too.
@@ -101,7 +104,7 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   check.shift_m = shift.tail<3>().norm();
   check.shift_sigmas = std::sqrt(shift.dot(covariance.ldlt().solve(shift)));
   check.agrees = check.shift_sigmas < kMaxShiftSigmas;  // false when it is not a number
-  if (!check.agrees && hidden > kMostHidden) check.enough_evidence = false;
+  if (check.agrees) check.enough_evidence = true;
   return check;
 }
 

@@ -31,7 +31,7 @@ struct CrossCheck {
 
   /// Beyond this the two poses cannot both be right, or something was moved between their calibrations.
   static constexpr double kMostSigmas = 2;
-  bool disagrees() const { return has_overlap && sigmas > kMostSigmas; }
+  bool disagrees() const { return has_overlap && !(sigmas <= kMostSigmas); }
 };
 
 /// Point-to-plane, robustly, of the second sensor's background on the first's, in the base frame; pose and

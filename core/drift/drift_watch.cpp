@@ -21,6 +21,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
 constexpr double kMuch = 0.35, kWhole = 0.9;  // shares of a frame
 constexpr double kRobotHolds_s = 10;
+constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -65,7 +66,7 @@ void DriftWatch::start_over() {
   test_.reset();
   T_learnt_now_.reset();
   check_.reset();
-  moved_ = bias_changed_ = model_wrong_ = is_refined_ = false;
+  moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
   robot_statistic_ = before_posture_ = 0;
   posture_.clear();
   quiet_frames_ = 0;
@@ -90,7 +91,11 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     if (!frame.joint_positions_rad.empty()) robot = robot_.at(frame.joint_positions_rad, T_base_sensor_);
     auto observation = matcher_.match(frame.depth, robot, T_base_sensor_.linear());
     if (!observation.has_evidence && frames_ % kRealignEvery == 0) realign(robot, observation);
-    if (observation.has_evidence) evidence_s_ = frame_s_;
+    if (observation.has_evidence) {
+      evidence_s_ = frame_s_;
+      lies_elsewhere_ = false;
+    }
+    observation.elsewhere = lies_elsewhere_;
     const bool had_moved = moved_;
     follow_loss(observation, frame_s_);
     test(observation);
@@ -140,7 +145,7 @@ void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservat
   if (T_learnt_now_) found = align_background(map_, matcher_.depth_m(), {}, *T_learnt_now_);
   if (!found) found = align_background(map_, matcher_.depth_m(), robot, Pose::Identity());
   if (!found || !is_pinned(*found)) {
-    observation.elsewhere = found && lies_elsewhere(*found);
+    lies_elsewhere_ = found && lies_elsewhere(*found);
     return T_learnt_now_.reset();
   }
   T_learnt_now_ = found->T_learnt_now;
@@ -156,8 +161,10 @@ void DriftWatch::test(const BackgroundObservation& observation) {
   innovation_ = Innovation{move * observation.shift, move * observation.covariance * move.transpose(),
                            observation.common_share};
   test_.add(innovation_->turn_shift, innovation_->covariance, innovation_->common_share);
-  if (worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
-      worst_sigma(innovation_->covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m)
+  // What the test tolerates, because all frames have it in common, is not known either.
+  const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
+  if (tolerated * worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
+      tolerated * worst_sigma(innovation_->covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m)
     pinned_s_ = frame_s_;
   count_quiet();
   last_covariance_ = innovation_->covariance;
@@ -232,6 +239,7 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
   report_.nearer = observation.share(CellState::nearer);
   report_.farther = observation.share(CellState::farther);
   report_.dark = observation.share(CellState::dark);
+  if (moved_ && frame_s_ - evidence_s_ > kEvidence_s) report_.T_base_sensor_seen.reset();
   const bool is_known = report_.shift_sigma_m < kSeenWithin_m && report_.turn_sigma_rad < kSeenWithin_rad;
   const bool is_fit = observation.realigned || report_.same >= kLeastSame;
   if (!moved_ || !observation.has_evidence || !is_known || !is_fit) return;
@@ -253,6 +261,11 @@ bool DriftWatch::is_known_to_stand() const {
 bool DriftWatch::is_seen() const {
   const bool told = check_ && check_->agrees && frame_s_ - check_s_ < kRobotHolds_s;
   return is_known_to_stand() || (told && frame_s_ - evidence_s_ < kEvidence_s);
+}
+
+bool DriftWatch::is_out_of_sight() const {
+  return has_background() && frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s &&
+         !robot_stands_since(frame_s_ - kOutOfSight_s);
 }
 
 void DriftWatch::judge(double now_s) {

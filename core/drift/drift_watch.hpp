@@ -53,6 +53,9 @@ class DriftWatch {
   bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
+  /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden, dark or
+  /// elsewhere, and the robot has not spoken.
+  bool is_out_of_sight() const;
   /// The sensor was away: what was seen before says nothing of where it is now.
   void on_gap() { quiet_frames_ = 0; }
 
@@ -108,7 +111,7 @@ class DriftWatch {
   std::optional<Matrix6d> last_covariance_;  // of the last innovation
   std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
-  bool moved_ = false, is_refined_ = false;
+  bool moved_ = false, is_refined_ = false, lies_elsewhere_ = false;
   int frames_ = 0, quiet_frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, lost_s_ = -1e9, absorbed_s_ = 0,
          learnt_s_ = -1;

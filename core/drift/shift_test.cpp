@@ -12,7 +12,6 @@ namespace {
 constexpr double kAllowance = 1;  // standard deviations: half of what it is most sensitive to
 /// One frame counts no more than this, so that no single one alarms.
 constexpr double kMostPerFrame = 4;
-constexpr double kCommonSigmas = 3;
 constexpr double kNewest = 0.25;  // weight of a frame in the running mean
 constexpr double kSecondsPerYear = 365.25 * 86400;
 /// Uncertainty that does not average out from frame to frame (a tool's shadow, a cable that sways), m and

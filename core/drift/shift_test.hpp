@@ -26,6 +26,9 @@ class ShiftTest {
   void add(const Vector6d& turn_shift, const Matrix6d& covariance, double common_share = 0);
   void reset();
 
+  /// Of what all frames have in common, as much is tolerated.
+  static constexpr double kCommonSigmas = 3;
+
   bool is_alarmed() const { return statistic_ > threshold_; }
   double statistic() const { return statistic_; }
   double threshold() const { return threshold_; }

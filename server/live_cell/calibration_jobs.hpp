@@ -39,6 +39,7 @@ struct Objection {
 struct Surroundings {
   std::shared_ptr<const BackgroundMap> background;  ///< null where nobody watches for drift
   std::vector<Objection> objections;                ///< which count once the pose is served
+  bool has_moved = false;  ///< the newest frame does not show it where they did: the sensor may have moved
 };
 
 /// Runs calibrations: collects postures of any number of sensors at a time, computes one at a time on a

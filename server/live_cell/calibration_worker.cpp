@@ -116,7 +116,11 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
 
 void CalibrationJobs::compute(const JobPointer& job) {
   const auto views = job->task->take_views();
-  job->seen_at = time_of_last(views);
+  const auto seen_at = time_of_last(views);
+  {
+    const std::lock_guard lock(mutex_);
+    job->seen_at = seen_at;
+  }
   auto result = calibrate(job, views);
   {
     const std::lock_guard lock(mutex_);
@@ -126,10 +130,14 @@ void CalibrationJobs::compute(const JobPointer& job) {
     end(job, JobStatus::cancelled, "Cancelled on request.");
     return;
   }
-  if (review_ && is_accepted(result)) job->surroundings = review_(*job->sensor, views, result);
+  if (review_ && is_accepted(result)) {
+    auto surroundings = review_(*job->sensor, views, result);
+    const std::lock_guard lock(mutex_);
+    job->surroundings = std::move(surroundings);
+  }
   auto evidence = evidence_of(result, job->report.method, views);
   end_computed(job, std::move(result));
-  if (evidence) job->sensor->set_evidence(*std::move(evidence), job->seen_at);
+  if (evidence) job->sensor->set_evidence(*std::move(evidence), seen_at);
 }
 
 CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<const View> views) {
@@ -163,11 +171,15 @@ void CalibrationJobs::end_computed(const JobPointer& job, CalibrationResult resu
 void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string message,
                           std::optional<CalibrationResult> result) {
   CalibrationReport report;
+  Clock::time_point seen_at;
+  Surroundings surroundings;
   {
     const std::lock_guard lock(mutex_);
     if (job->is_ending) return;
     job->is_ending = true;
     report = job->report;
+    seen_at = job->seen_at;
+    surroundings = job->surroundings;
   }
   report.status = status;
   report.message = std::move(message);
@@ -176,8 +188,8 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   report.progress = 1;
   report.postures_seen = job->task->seen();
   if (store_end(report, job->sensor->basis()) && status == JobStatus::succeeded)
-    publish_(report, job->seen_at, job->surroundings);
-  log_(report, job->seen_at);
+    publish_(report, seen_at, surroundings);
+  log_(report, seen_at);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);
 }

@@ -33,7 +33,7 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   has_pose_ = true;
   newest_ = {};
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
-  in_place_ = wants_check_ = false;
+  in_place_ = wants_check_ = out_of_sight_ = false;
   frames_seen_ = 0;
 }
 
@@ -75,6 +75,7 @@ void DriftMonitor::add_frame(const View& frame) {
   ++frames_seen_;
   in_place_ = watch_->is_in_place();
   wants_check_ = watch_->wants_check();
+  out_of_sight_ = watch_->is_out_of_sight();
   stamp_ = time_of(frame.stamp_s);
 }
 
@@ -130,6 +131,11 @@ DriftVerdict DriftMonitor::verdict() const {
 bool DriftMonitor::is_in_place() const {
   const std::lock_guard lock(mutex_);
   return in_place_;
+}
+
+bool DriftMonitor::is_out_of_sight() const {
+  const std::lock_guard lock(mutex_);
+  return out_of_sight_;
 }
 
 bool DriftMonitor::wants_check() const {

@@ -99,10 +99,11 @@ std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {
 /// restart, too; also that of a calibration that waits to be activated.
 void LiveCell::adopt(const api::CalibrationReport& calibration, Clock::time_point seen_at,
                      const Surroundings& surroundings) {
-  if (calibration.current) {
-    publish(calibration, {seen_at, false, {}}, surroundings.background);
+  PoseOrigin origin;
+  origin.seen_at = seen_at;
+  origin.moved_since = surroundings.has_moved;
+  if (calibration.current && publish(calibration, origin, surroundings.background))
     for (const Objection& objection : surroundings.objections) withhold(objection);
-  }
   if (!surroundings.background) return;
   const auto stored = store_.add_background(calibration.id, surroundings.background->depths_m());
   if (!stored && log_.on_error)
@@ -135,17 +136,19 @@ void LiveCell::request_stop() {
   jobs_.request_stop();
 }
 
-/// Two calibrations may be made current at once; then the one that lost in the store is not served.
-void LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
+/// False: another calibration was made current meanwhile and is, or will be, the one that is served.
+bool LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
                        std::shared_ptr<const BackgroundMap> background) {
   const auto entry = entries_.find(calibration.sensor_id);
-  if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return;
+  if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor)
+    return false;
   const std::lock_guard lock(publishing_);
   const auto current = store_.current(calibration.sensor_id);
-  if (current && *current && (*current)->calibration.id != calibration.id) return;
+  if (current && *current && (*current)->calibration.id != calibration.id) return false;
   entry->second->sensor->set_pose(
       {calibration.id, calibration.finished.value_or(calibration.created), *calibration.result}, origin,
       std::move(background));
+  return true;
 }
 
 Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {

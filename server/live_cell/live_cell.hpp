@@ -120,7 +120,7 @@ class LiveCell : public api::CellService {
 
   Result<Entry*> find(std::string_view sensor_id) const;
   std::optional<Pose> guess_for(const Entry& entry, const api::CalibrationRequest& request) const;
-  void publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
+  bool publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
                std::shared_ptr<const BackgroundMap> background);
   void restore(const CurrentCalibration& stored, const LiveSensor& sensor);
   void hear_of_pose(const api::PoseReport& pose);

@@ -7,6 +7,8 @@
 
 namespace calibrd {
 
+static constexpr double kStands_m = 0.005, kStands_rad = 0.005, kSigmas = 5;
+
 Result<api::ObstaclesReport> LiveCell::obstacles(const std::string& sensor_id) const {
   if (!sensor_id.empty())
     if (const auto entry = find(sensor_id); !entry) return entry.error();
@@ -30,6 +32,20 @@ std::vector<api::SensorPair> LiveCell::cross_checks() const {
   return compare_pairs(sensors);
 }
 
+/// Whether a frame shows the background where a pose puts it: until a pose is served nobody watches it.
+static bool shows(const View& frame, const BackgroundMap& background, const Pose& T_base_sensor,
+                  RobotMask& robot) {
+  if (background.is_empty()) return true;
+  std::span<const std::uint8_t> mask;
+  if (!frame.joint_positions_rad.empty()) mask = robot.at(frame.joint_positions_rad, T_base_sensor);
+  const auto seen = BackgroundMatcher(background).match(frame.depth, mask, T_base_sensor.linear());
+  if (!seen.has_evidence) return false;
+  const Vector6d sigma = seen.covariance.diagonal().cwiseSqrt();
+  Vector6d allowed;
+  allowed << Eigen::Vector3d::Constant(kStands_rad), Eigen::Vector3d::Constant(kStands_m);
+  return (seen.shift.cwiseAbs() - kSigmas * sigma - allowed).maxCoeff() < 0;
+}
+
 Surroundings LiveCell::review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result) {
   if (!estimator_.make_watch) return {};
   RobotMask robot(virtual_cell_, sensor.camera());
@@ -39,7 +55,9 @@ Surroundings LiveCell::review(LiveSensor& sensor, std::span<const View> views, C
   for (const auto& [id, entry] : entries_)
     if (entry->sensor.get() != &sensor) others.push_back(entry->sensor.get());
   auto objections = review_against(others, sensor, *background, result);
-  return {std::move(background), std::move(objections)};
+  const auto newest = sensor.newest();
+  const bool is_there = !newest || shows(newest->view, *background, *result.T_base_sensor, robot);
+  return {std::move(background), std::move(objections), !is_there};
 }
 
 /// A pose that a better one contradicts is served no longer, and does not come back with a restart.

@@ -3,6 +3,7 @@
 #include "server/live_cell/live_sensor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace calibrd {
 namespace {
@@ -176,6 +177,7 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (has_moved && !has_moved_) moved_at_ = Clock::now();
   has_moved_ = has_moved;
   if (has_moved) watch_.on_sensor_moved();
+  if (monitor_->is_out_of_sight()) watch_.on_view_lost();
   if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
   forget_evidence(was_plausible);
 }
@@ -187,9 +189,15 @@ void LiveSensor::forget_evidence(bool was_plausible) {
 
 /// Views of before and after a move never come together, also while the sensor goes on moving.
 void LiveSensor::notice_move() {
+  std::uint64_t pose_number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    pose_number = pose_number_;
+  }
+  if (std::exchange(resting_number_, pose_number) != pose_number) resting_at_.reset();
   const auto seen = monitor_->T_base_sensor_seen();
-  if (!seen) return resting_at_.reset();
-  if (resting_at_) {
+  if (!seen && !resting_at_) return;
+  if (seen && resting_at_) {
     const Vector6d since = difference(*resting_at_, *seen);
     if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
   }
@@ -258,7 +266,8 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
   else
     watch_.set_stored();
   // What was found before the sensor was lost, or moved once more, is not known to hold now.
-  if (origin.seen_at && *origin.seen_at <= std::max(lost_at_, moved_at_)) watch_.on_sensor_lost();
+  const bool moved = origin.seen_at && *origin.seen_at <= std::max(lost_at_, moved_at_);
+  if (moved || origin.moved_since) watch_.on_sensor_lost();
 }
 
 bool LiveSensor::withhold(const std::string& calibration_id, const std::string& objection) {

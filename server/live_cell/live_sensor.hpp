@@ -31,6 +31,7 @@ using CheckFunction =
 struct PoseOrigin {
   std::optional<Clock::time_point> seen_at;  ///< of the views it was just found from; nothing: a stored pose
   bool drifted = false;                      ///< a stored one that had drifted
+  bool moved_since = false;                  ///< the sensor may have moved since it was found
   std::string objection;                     ///< why a stored one must not be used, whatever checks say
 };
 
@@ -142,7 +143,8 @@ class LiveSensor {
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
-  std::optional<Pose> resting_at_;  // where a sensor that has moved was seen first, or last come to rest
+  std::optional<Pose> resting_at_;    // where a sensor that has moved was seen first, or last come to rest
+  std::uint64_t resting_number_ = 0;  // of the pose that it has moved from
   const std::shared_ptr<const LinkReach> reach_;
   OffsetWatch offset_;  // its report(): anybody's
   ViewGate gate_;

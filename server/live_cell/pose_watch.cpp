@@ -40,9 +40,16 @@ void PoseWatch::on_sensor_lost() {
   doubt_ = Doubt::sensor_lost;
 }
 
+void PoseWatch::on_view_lost() {
+  if (state_ != PoseState::calibrated) return;
+  state_ = PoseState::unverified;
+  doubt_ = Doubt::view_lost;
+}
+
 void PoseWatch::on_background_in_place(Clock::time_point now) {
   in_place_at_ = now;
-  const bool returned = state_ == PoseState::unverified && doubt_ == Doubt::sensor_lost;
+  const bool returned = state_ == PoseState::unverified &&
+                        (doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost);
   if (!objection_.empty() || (state_ != PoseState::calibrated && !returned)) return;
   state_ = PoseState::calibrated;
   passed_at_ = now;
@@ -56,8 +63,8 @@ void PoseWatch::on_sensor_moved() {
 
 bool PoseWatch::is_check_due(Clock::time_point now) const {
   if (state_ == PoseState::uncalibrated) return false;
-  const bool settled =
-      state_ != PoseState::unverified || doubt_ == Doubt::restored || doubt_ == Doubt::sensor_lost;
+  const bool settled = state_ != PoseState::unverified || doubt_ == Doubt::restored ||
+                       doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost;
   return !checked_at_ || now - *checked_at_ >= (settled ? settings_.check_period : settings_.recheck_period);
 }
 
@@ -92,8 +99,11 @@ std::string PoseWatch::doubt() const {
   if (!objection_.empty()) return objection_;
   switch (doubt_) {
     case Doubt::sensor_lost:
-      return "the sensor was lost and may have been moved; the pose is checked when the sensor is back and "
-             "the robot holds still in view";
+      return "the sensor was lost or has moved since the pose was found; the pose is checked when frames come "
+             "and the robot holds still in view";
+    case Doubt::view_lost:
+      return "for two seconds the sensor has seen neither the background nor the robot where the pose says; "
+             "take away what stands before it, or, if it was moved, calibrate again";
     case Doubt::disagreement:
       return "the last check disagreed with the pose; further checks follow at once";
     case Doubt::robot_off:

@@ -42,6 +42,9 @@ class PoseWatch {
   /// The sensor sees the background where it was when the pose was found: that is a check, too, unless the
   /// robot has disagreed. While it goes on a disagreeing robot is off, not the sensor.
   void on_background_in_place(Clock::time_point now);
+  /// Neither the background nor the robot has been seen where the pose says for a while: a valid pose is
+  /// unverified until one of them is.
+  void on_view_lost();
   /// The background says that the sensor has moved.
   void on_sensor_moved();
 
@@ -66,7 +69,7 @@ class PoseWatch {
 
   PoseWatchSettings settings_;
   api::PoseState state_ = api::PoseState::uncalibrated;
-  enum class Doubt { restored, sensor_lost, disagreement, robot_off };
+  enum class Doubt { restored, sensor_lost, view_lost, disagreement, robot_off };
   Doubt doubt_ = Doubt::restored;  // why it is unverified
   std::string objection_;
   int disagreements_ = 0;  // in a row

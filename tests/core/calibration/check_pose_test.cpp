@@ -146,6 +146,23 @@ TEST(CheckPose, ARobotThatIsPartlyHiddenSpeaksByWhatIsWellClearOfTheRim) {
   EXPECT_GT(most, 0);
 }
 
+TEST(CheckPose, AFenceBeforeTheRobotSpeaksAgainstNoPose) {
+  VirtualCell cell(test_arm());
+  PoseChecker checker(cell, ideal_kinect2());
+  int hidden_much = 0;
+  for (const int bar : {2, 4, 6})
+    for (const int every : {14, 20}) {
+      View view = render_views(1)[0];
+      for (int y = 0; y < view.depth.height; ++y)
+        for (int x = 0; x < view.depth.width; ++x)
+          if (x % every < bar) view.depth.raw[view.depth.index(x, y)] = 600;
+      const PoseCheck check = checker.check(view, true_T_base_sensor(), {});
+      hidden_much += 5 * check.hidden_pixels > check.robot_pixels ? 1 : 0;
+      EXPECT_TRUE(check.agrees || !check.enough_evidence) << bar << " of " << every;
+    }
+  EXPECT_GT(hidden_much, 0);
+}
+
 TEST(CheckPose, TakesTheKnownRangeOffsetIntoAccount) {
   SceneSettings scene = cluttered();
   scene.offset_m = 0.03;

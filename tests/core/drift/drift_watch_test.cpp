@@ -171,6 +171,35 @@ TEST_F(DriftWatchTest, DarkIsNoEvidence) {
   EXPECT_EQ(watch_for(1.5), DriftVerdict::in_place);
 }
 
+TEST_F(DriftWatchTest, WhatNeitherBackgroundNorRobotHasShownForTwoSecondsIsOutOfSight) {
+  watch_for(3);
+  EXPECT_FALSE(watch_.is_out_of_sight());
+  room_.hidden_share = 1;
+  watch_for(1.5);
+  EXPECT_FALSE(watch_.is_out_of_sight());
+  watch_for(1);
+  EXPECT_TRUE(watch_.is_out_of_sight());
+  check(Vector6d::Zero());
+  watch_for(0.5);
+  EXPECT_FALSE(watch_.is_out_of_sight());
+  watch_for(2.5);
+  EXPECT_TRUE(watch_.is_out_of_sight());
+  room_.hidden_share = 0;
+  watch_for(0.1);
+  EXPECT_FALSE(watch_.is_out_of_sight());
+}
+
+TEST_F(DriftWatchTest, WhereAMovedSensorIsIsToldNoLongerOnceItSeesNothingOfTheBackground) {
+  watch_for(1);
+  moved_ = shifted(0.03, 0, 0);
+  watch_for(1);
+  ASSERT_TRUE(watch_.report().T_base_sensor_seen);
+  dark_ = true;
+  watch_for(1.5);
+  EXPECT_FALSE(watch_.report().T_base_sensor_seen);
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
 TEST_F(DriftWatchTest, WithoutJointsTheRobotIsNoChangeOfTheScene) {
   watch_for(1);
   joints_lost_ = true;

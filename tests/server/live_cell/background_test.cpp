@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // What a calibration saw around the robot is learnt once, and kept with it.
+#include <gmock/gmock.h>
+
 #include <future>
 
 #include "tests/server/live_cell/cell_fixture.hpp"
@@ -77,6 +79,36 @@ TEST_F(Background, APoseFoundFromViewsOfBeforeAMoveIsNotValidWhenItIsComputed) {
   EXPECT_EQ(pose().known->calibration_id, id);
   EXPECT_FALSE(pose().valid);
   EXPECT_EQ(pose().state, api::PoseState::unverified);
+}
+
+TEST_F(Background, TheFirstPoseOfASensorThatMovedMeanwhileIsNotValid) {
+  std::promise<void> moved;
+  on_calibrate_ = [until = moved.get_future().share()](auto views, const auto&) {
+    until.wait();
+    return accepted(views);
+  };
+  const auto id = start_job(1)->id;
+  watch_until([&] { return job(id).status == api::JobStatus::running; });
+  agrees_ = false;
+  wall_mm_ = 1700;
+  const auto frames = frames_sent_;
+  watch_until([&] { return frames_sent_ > frames + 5; });
+  moved.set_value();
+  wait_for([&] { return job(id).finished.has_value(); });
+  EXPECT_EQ(pose().known->calibration_id, id);
+  EXPECT_EQ(pose().state, api::PoseState::unverified);
+}
+
+TEST_F(Background, OutOfSightThePoseIsUnverifiedUntilItIsSeenAgain) {
+  calibrate();
+  repeat_until([&] { is_known(); }, [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
+  checks_have_evidence_ = false;
+  wall_mm_ = 800;  // somebody stands before the lens
+  watch_until([&] { return pose().state == api::PoseState::unverified; });
+  EXPECT_THAT(pose().reason, ::testing::HasSubstr("two seconds"));
+  checks_have_evidence_ = true;
+  wall_mm_ = 1500;
+  watch_until([&] { return pose().valid; });
 }
 
 TEST_F(Background, OfARejectedCalibrationIsNone) {

@@ -112,7 +112,7 @@ class CellFixture : public ::testing::Test {
     estimator.make_check = [this](const CameraModel&) -> CheckFunction {
       return [this](const View&, const Pose&, const DepthCorrection&, const Matrix6d&) {
         ++checks_;
-        return PoseCheck{true, agrees_.load(), 0.9, 0, 4000};
+        return PoseCheck{checks_have_evidence_.load(), agrees_.load(), 0.9, 0, 4000};
       };
     };
     if (watches_)
@@ -249,7 +249,7 @@ class CellFixture : public ::testing::Test {
   RobotLinkEvents events_;
   std::uint64_t joints_sent_ = 0, frames_sent_ = 0;
   std::atomic<int> checks_{0};
-  std::atomic<bool> agrees_{true};
+  std::atomic<bool> agrees_{true}, checks_have_evidence_{true};
   std::function<void(const api::CalibrationReport&)> on_log_ = [](const auto&) {};
   std::function<void(const std::string&)> on_error_ = [](const auto&) {};
   std::function<CalibrationResult(std::span<const View>, const CalibrationSettings&)> on_calibrate_ =
