@@ -63,7 +63,7 @@ void BackgroundMap::learn(std::span<const View> views, std::span<const std::vect
 void BackgroundMap::recall(std::span<const float> depth_m, int views) {
   if (depth_m.size() != cells_.size()) return;
   is_recalled_ = true;
-  // The robot hides a cell in some of the views; what most agree on is the mean of half of them at least.
+  // The robot hides a cell in some of the views; half of them is what a cell has on the whole.
   const auto frames = static_cast<float>(std::max(1, views / 2));
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     cells_[i].depth_m = depth_m[i];
