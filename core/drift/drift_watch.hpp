@@ -53,8 +53,8 @@ class DriftWatch {
   bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
-  /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden, dark or
-  /// elsewhere, and the robot has not spoken.
+  /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden,
+  /// dark or elsewhere, and the robot has not spoken.
   bool is_out_of_sight() const;
   /// The sensor was away: what was seen before says nothing of where it is now.
   void on_gap() { quiet_frames_ = 0; }

@@ -140,8 +140,7 @@ void LiveCell::request_stop() {
 bool LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrigin& origin,
                        std::shared_ptr<const BackgroundMap> background) {
   const auto entry = entries_.find(calibration.sensor_id);
-  if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor)
-    return false;
+  if (entry == entries_.end() || !calibration.result || !calibration.result->T_base_sensor) return false;
   const std::lock_guard lock(publishing_);
   const auto current = store_.current(calibration.sensor_id);
   if (current && *current && (*current)->calibration.id != calibration.id) return false;

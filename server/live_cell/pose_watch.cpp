@@ -48,8 +48,8 @@ void PoseWatch::on_view_lost() {
 
 void PoseWatch::on_background_in_place(Clock::time_point now) {
   in_place_at_ = now;
-  const bool returned = state_ == PoseState::unverified &&
-                        (doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost);
+  const bool returned =
+      state_ == PoseState::unverified && (doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost);
   if (!objection_.empty() || (state_ != PoseState::calibrated && !returned)) return;
   state_ = PoseState::calibrated;
   passed_at_ = now;
@@ -99,7 +99,8 @@ std::string PoseWatch::doubt() const {
   if (!objection_.empty()) return objection_;
   switch (doubt_) {
     case Doubt::sensor_lost:
-      return "the sensor was lost or has moved since the pose was found; the pose is checked when frames come "
+      return "the sensor was lost or has moved since the pose was found; the pose is checked when frames "
+             "come "
              "and the robot holds still in view";
     case Doubt::view_lost:
       return "for two seconds the sensor has seen neither the background nor the robot where the pose says; "

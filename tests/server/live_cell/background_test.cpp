@@ -101,7 +101,8 @@ TEST_F(Background, TheFirstPoseOfASensorThatMovedMeanwhileIsNotValid) {
 
 TEST_F(Background, OutOfSightThePoseIsUnverifiedUntilItIsSeenAgain) {
   calibrate();
-  repeat_until([&] { is_known(); }, [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
+  repeat_until([&] { is_known(); },
+               [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
   checks_have_evidence_ = false;
   wall_mm_ = 800;  // somebody stands before the lens
   watch_until([&] { return pose().state == api::PoseState::unverified; });
