@@ -113,7 +113,7 @@ View PoseChecker::without_rim(const View& view) const {
   View rest = view;
   for (const auto& [x, y] : hidden_) {
     const int left = std::max(0, x - kRim_px), right = std::min(camera_.width - 1, x + kRim_px);
-    for (int v = std::max(0, y - kRim_px); v <= std::min(camera_.height - 1, y + kRim_px); v += 1)
+    for (int v = std::max(0, y - kRim_px); v <= std::min(camera_.height - 1, y + kRim_px); ++v)
       std::fill_n(rest.depth.raw.begin() + static_cast<std::ptrdiff_t>(rest.depth.index(left, v)),
                   right - left + 1, std::uint16_t{0});
   }

@@ -35,7 +35,6 @@ struct BackgroundObservation {
   /// Of the covariance: what all frames have in common, the noise of the map and what no model of it has.
   double common_share = 0;
   bool realigned = false;  ///< the background had to be searched: it lies far from where it should
-  bool elsewhere = false;  ///< and all of it lies there, though it leaves open where that is
   std::array<std::size_t, 6> counts{};  ///< cells of each CellState
   std::size_t count(CellState state) const { return counts[static_cast<std::size_t>(state)]; }
   /// Cells that could tell: remembered, not hidden by the robot.

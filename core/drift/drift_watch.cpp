@@ -95,7 +95,6 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
       evidence_s_ = frame_s_;
       lies_elsewhere_ = false;
     }
-    observation.elsewhere = lies_elsewhere_;
     const bool had_moved = moved_;
     follow_loss(observation, frame_s_);
     test(observation);
@@ -212,10 +211,10 @@ void DriftWatch::follow_offset(const BackgroundObservation& observation, double 
 }
 
 /// Nothing of the background is where any nearby place of the sensor would see it, and that is not because
-/// something stands in front: much lies farther, or the robot is elsewhere, too, or all of it lies on one
-/// plane that was there before.
+/// something stands in front: much lies farther, or the robot is elsewhere, too, or all that is seen is
+/// the background from elsewhere.
 void DriftWatch::follow_loss(const BackgroundObservation& observation, double now_s) {
-  const bool elsewhere = observation.elsewhere || observation.share(CellState::farther) >= kLeastGone ||
+  const bool elsewhere = lies_elsewhere_ || observation.share(CellState::farther) >= kLeastGone ||
                          (observation.share(CellState::same) < kLeastLeft && is_robot_off());
   const bool lost = !observation.has_evidence && elsewhere;
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;

@@ -6,8 +6,24 @@
 #include "server/live_cell/live_cell.hpp"
 
 namespace calibrd {
+namespace {
 
-static constexpr double kStands_m = 0.005, kStands_rad = 0.005, kSigmas = 5;
+constexpr double kStands_m = 0.005, kStands_rad = 0.005, kSigmas = 5;
+
+/// Whether a frame shows the background where a pose puts it: until a pose is served nobody watches it.
+bool shows(const View& frame, const BackgroundMap& background, const Pose& T_base_sensor, RobotMask& robot) {
+  if (background.is_empty()) return true;
+  std::span<const std::uint8_t> mask;
+  if (!frame.joint_positions_rad.empty()) mask = robot.at(frame.joint_positions_rad, T_base_sensor);
+  const auto seen = BackgroundMatcher(background).match(frame.depth, mask, T_base_sensor.linear());
+  if (!seen.has_evidence) return false;
+  const Vector6d sigma = seen.covariance.diagonal().cwiseSqrt();
+  Vector6d allowed;
+  allowed << Eigen::Vector3d::Constant(kStands_rad), Eigen::Vector3d::Constant(kStands_m);
+  return (seen.shift.cwiseAbs() - kSigmas * sigma - allowed).maxCoeff() < 0;
+}
+
+}  // namespace
 
 Result<api::ObstaclesReport> LiveCell::obstacles(const std::string& sensor_id) const {
   if (!sensor_id.empty())
@@ -30,20 +46,6 @@ std::vector<api::SensorPair> LiveCell::cross_checks() const {
   std::vector<const LiveSensor*> sensors;
   for (const auto& [id, entry] : entries_) sensors.push_back(entry->sensor.get());
   return compare_pairs(sensors);
-}
-
-/// Whether a frame shows the background where a pose puts it: until a pose is served nobody watches it.
-static bool shows(const View& frame, const BackgroundMap& background, const Pose& T_base_sensor,
-                  RobotMask& robot) {
-  if (background.is_empty()) return true;
-  std::span<const std::uint8_t> mask;
-  if (!frame.joint_positions_rad.empty()) mask = robot.at(frame.joint_positions_rad, T_base_sensor);
-  const auto seen = BackgroundMatcher(background).match(frame.depth, mask, T_base_sensor.linear());
-  if (!seen.has_evidence) return false;
-  const Vector6d sigma = seen.covariance.diagonal().cwiseSqrt();
-  Vector6d allowed;
-  allowed << Eigen::Vector3d::Constant(kStands_rad), Eigen::Vector3d::Constant(kStands_m);
-  return (seen.shift.cwiseAbs() - kSigmas * sigma - allowed).maxCoeff() < 0;
 }
 
 Surroundings LiveCell::review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result) {

@@ -22,6 +22,25 @@ class Background : public CellFixture {
     show();
     return cell_->drift("eye")->now.has_background;
   }
+  /// A calibration that has its views, and whose sensor has moved since.
+  std::string move_while_it_is_computed() {
+    on_calibrate_ = [until = moved_.get_future().share()](auto views, const auto&) {
+      until.wait();
+      return accepted(views);
+    };
+    const auto id = start_job(1)->id;
+    watch_until([&] { return job(id).status == api::JobStatus::running; });
+    agrees_ = false;
+    wall_mm_ = 1700;
+    return id;
+  }
+  void let_it_be_computed(const std::string& id) {
+    moved_.set_value();
+    wait_for([&] { return job(id).finished.has_value(); });
+  }
+
+ private:
+  std::promise<void> moved_;
 };
 
 TEST_F(Background, OfACurrentCalibrationIsWatchedAtOnceAndStored) {
@@ -63,18 +82,9 @@ TEST_F(Background, APoseFoundFromViewsOfBeforeAMoveIsNotValidWhenItIsComputed) {
   calibrate();
   repeat_until([&] { is_known(); },
                [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
-  std::promise<void> moved;
-  on_calibrate_ = [until = moved.get_future().share()](auto views, const auto&) {
-    until.wait();
-    return accepted(views);
-  };
-  const auto id = start_job(1)->id;
-  watch_until([&] { return job(id).status == api::JobStatus::running; });
-  agrees_ = false;
-  wall_mm_ = 1700;
+  const auto id = move_while_it_is_computed();
   watch_until([&] { return cell_->drift("eye")->now.verdict == DriftVerdict::sensor_moved; });
-  moved.set_value();
-  wait_for([&] { return job(id).finished.has_value(); });
+  let_it_be_computed(id);
   EXPECT_EQ(job(id).status, api::JobStatus::succeeded);
   EXPECT_EQ(pose().known->calibration_id, id);
   EXPECT_FALSE(pose().valid);
@@ -82,19 +92,10 @@ TEST_F(Background, APoseFoundFromViewsOfBeforeAMoveIsNotValidWhenItIsComputed) {
 }
 
 TEST_F(Background, TheFirstPoseOfASensorThatMovedMeanwhileIsNotValid) {
-  std::promise<void> moved;
-  on_calibrate_ = [until = moved.get_future().share()](auto views, const auto&) {
-    until.wait();
-    return accepted(views);
-  };
-  const auto id = start_job(1)->id;
-  watch_until([&] { return job(id).status == api::JobStatus::running; });
-  agrees_ = false;
-  wall_mm_ = 1700;
+  const auto id = move_while_it_is_computed();
   const auto frames = frames_sent_;
   watch_until([&] { return frames_sent_ > frames + 5; });
-  moved.set_value();
-  wait_for([&] { return job(id).finished.has_value(); });
+  let_it_be_computed(id);
   EXPECT_EQ(pose().known->calibration_id, id);
   EXPECT_EQ(pose().state, api::PoseState::unverified);
 }
