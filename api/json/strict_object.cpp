@@ -6,7 +6,10 @@
 #include <boost/json/array.hpp>
 #include <boost/json/parser.hpp>
 #include <boost/json/serialize.hpp>
+#include <cmath>
 
+#include "api/json/doubled_key.hpp"
+#include "api/json/json_text.hpp"
 #include "api/problem/api_error.hpp"
 #include "core/robot/nearest_name.hpp"
 
@@ -25,6 +28,7 @@ const json::value* find(const json::object& object, std::string_view key) {
 
 Error wrong(std::string_view key, const json::value& value, const std::string& wanted) {
   auto shown = json::serialize(value);
+  if (value.is_double()) shown = json_text(value), shown.pop_back();  // 5.5, not 5.5E0, and no end of line
   if (shown.size() > kShownBytes) shown = shown.substr(0, kShownBytes) + "…";
   return fail(ApiError::bad_value, std::string(key) + ": " + shown + " is not " + wanted);
 }
@@ -65,6 +69,8 @@ Result<json::object> read_body(std::string_view body, std::string_view content_t
   if (failure || rest != std::string_view::npos)
     return fail(ApiError::bad_json,
                 place(body, used) + ": " + (failure ? failure.message() : "text after the end"));
+  if (const auto doubled = find_doubled_key(body))
+    return fail(ApiError::bad_json, "the key \"" + *doubled + "\" stands twice");
   const auto value = parser.release();
   const auto* object = value.if_object();
   if (!object) return fail(ApiError::bad_json, "an object { … } is wanted");
@@ -86,9 +92,10 @@ Result<bool> read_bool(const json::object& object, std::string_view key, bool ot
 Result<std::optional<int>> read_int(const json::object& object, std::string_view key, int min, int max) {
   const auto* value = find(object, key);
   if (!value) return std::optional<int>();
-  if (!value->is_int64() || value->get_int64() < min || value->get_int64() > max)
+  const double number = value->is_number() ? value->to_number<double>() : min - 1.0;  // 5.0 is a whole number, too
+  if (!(number >= min && number <= max) || number != std::floor(number))
     return wrong(key, *value, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
-  return std::optional<int>(static_cast<int>(value->get_int64()));
+  return std::optional<int>(static_cast<int>(number));
 }
 
 Result<std::optional<double>> read_number(const json::object& object, std::string_view key, double min,

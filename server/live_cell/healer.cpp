@@ -29,9 +29,10 @@ const char* name_of(HealingMode mode) {
   return "off";
 }
 
-Healer::Healer(const HealerSettings& settings, Start start, LastMove last_move)
+Healer::Healer(const HealerSettings& settings, Start start, Cancel cancel, LastMove last_move)
     : settings_(settings),
       start_(std::move(start)),
+      cancel_(std::move(cancel)),
       last_move_(std::move(last_move)),
       thread_([this] { run(); }) {}
 
@@ -62,6 +63,7 @@ void Healer::plan(Patient& patient, Clock::time_point now) const {
   if (now - patient.last_move > settings_.calm_after) patient.moves = 0;
   patient.last_move = now;
   patient.attempts = 0;
+  patient.wants_all = false;
   ++patient.moves;
   // A sensor that hangs loose would else be calibrated without end.
   patient.due = patient.moves <= kMovesWithoutPause ? now : now + pause_after(patient.moves);
@@ -75,6 +77,12 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
     return;
   Patient& patient = found->second;
   patient.calibration.clear();
+  if (patient.is_refining) {  // however it has ended: there is a pose, or the sensor has moved and is next
+    patient.is_refining = false;
+    changed_.notify_all();
+    return;
+  }
+  patient.wants_all = tells_too_little(patient, calibration);
   if (calibration.status == api::JobStatus::succeeded && !calibration.activate) {
     patient.candidate = calibration.id;
     patient.candidate_seen_at = seen_at;
@@ -82,6 +90,14 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   const bool eager = patient.attempts < kEagerAttempts && calibration.status == api::JobStatus::failed;
   patient.due = Clock::now() + (eager ? Clock::duration(0) : pause_after(patient.attempts));
   changed_.notify_all();
+}
+
+bool Healer::tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const {
+  const auto& result = calibration.result;
+  if (patient.attempts != 1 || calibration.status != api::JobStatus::succeeded || !calibration.activate)
+    return false;
+  return result && (result->sigma_position_m > settings_.quick_sigma_m ||
+                    result->sigma_rotation_rad > settings_.quick_sigma_rad);
 }
 
 Clock::duration Healer::pause_after(int attempts) const {
@@ -102,13 +118,27 @@ bool Healer::has_candidate(const std::string& sensor_id, const Patient& patient)
   return !patient.candidate.empty() && patient.candidate_seen_at > last_move_(sensor_id);
 }
 
+std::optional<Clock::time_point> Healer::next_attempt(const std::string& sensor_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = patients_.find(sensor_id);
+  if (found == patients_.end()) return std::nullopt;
+  const Patient& patient = found->second;
+  if (!patient.drifted || !patient.calibration.empty() || has_candidate(sensor_id, patient))
+    return std::nullopt;
+  return patient.due;
+}
+
 void Healer::run() {
   std::unique_lock lock(mutex_);
   while (!is_stopping_) {
     auto wake = Clock::now() + kLongWait;
-    std::string next;
+    std::string next, overtaken;
     for (const auto& [id, patient] : patients_) {
-      if (!patient.drifted || !patient.calibration.empty()) continue;
+      if (!patient.drifted && !patient.wants_all) continue;
+      if (!patient.calibration.empty()) {
+        if (patient.drifted && patient.is_refining) overtaken = patient.calibration;
+        continue;
+      }
       if (has_candidate(id, patient)) {
         wake = std::min(wake, Clock::now() + kCandidateLook);
         continue;
@@ -116,22 +146,39 @@ void Healer::run() {
       if (patient.due <= Clock::now()) next = id;
       wake = std::min(wake, patient.due);
     }
-    if (next.empty())
+    if (!overtaken.empty())
+      cancel(overtaken, lock);
+    else if (next.empty())
       changed_.wait_until(lock, wake);
     else
       attempt(next, lock);
   }
 }
 
-void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock) {
+/// A pose that has drifted meanwhile needs another one at once, not a better one some time.
+void Healer::cancel(const std::string& calibration_id, std::unique_lock<std::mutex>& lock) {
+  for (auto& [id, patient] : patients_)
+    if (patient.calibration == calibration_id) patient.calibration.clear(), patient.is_refining = false;
+  lock.unlock();
+  cancel_(calibration_id);
+  lock.lock();
+}
+
+api::CalibrationRequest Healer::next_request(const std::string& sensor_id) const {
+  const Patient& patient = patients_.at(sensor_id);
   api::CalibrationRequest request;
   request.sensor_id = sensor_id;
   request.activate = settings_.mode == HealingMode::automatic;
-  request.after_move = true;
-  if (patients_[sensor_id].attempts == 0) {
+  request.after_move = patient.drifted;
+  if (patient.drifted && patient.attempts == 0) {
     request.postures = settings_.postures;
     request.patience = settings_.patience;
   }
+  return request;
+}
+
+void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock) {
+  const auto request = next_request(sensor_id);
   is_starting_ = true;
   lock.unlock();
   const auto started = start_(request);
@@ -144,7 +191,9 @@ void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>&
     return;
   }
   patient.calibration = started->id;
-  ++patient.attempts;
+  patient.is_refining = !request.after_move;
+  patient.wants_all = false;
+  if (request.after_move) ++patient.attempts;
 }
 
 }  // namespace calibrd

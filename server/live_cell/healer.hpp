@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -25,20 +26,24 @@ struct HealerSettings {
   Clock::duration cooldown = std::chrono::seconds(10);  ///< after a failed attempt; doubles up to ...
   Clock::duration longest_cooldown = std::chrono::minutes(10);
   Clock::duration calm_after = std::chrono::minutes(10);  ///< ... and starts anew after so long without one
+  /// A quick result that is less certain is followed by a calibration from all the postures.
+  double quick_sigma_m = 0.001, quick_sigma_rad = 0.001;
 };
 
-/// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, with all
-/// the postures a calibration asks for, then again after pauses that grow. A sensor that moves again and
-/// again is given pauses, too. Safe to call from any thread.
+/// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, or tells
+/// less than it should, with all the postures a calibration asks for; after failures again, with pauses that
+/// grow. A sensor that moves again and again is given pauses, too. Safe to call from any thread.
 class Healer {
  public:
   /// Starts a calibration of a sensor; may fail, because one is under way or the cell is stopping.
   using Start = std::function<Result<api::CalibrationReport>(const api::CalibrationRequest&)>;
+  /// Ends one that it has started.
+  using Cancel = std::function<void(const std::string& calibration_id)>;
 
   /// When a sensor last moved or was away.
   using LastMove = std::function<Clock::time_point(const std::string& sensor_id)>;
 
-  Healer(const HealerSettings& settings, Start start, LastMove last_move);
+  Healer(const HealerSettings& settings, Start start, Cancel cancel, LastMove last_move);
   ~Healer();
 
   void on_pose(const api::PoseReport& pose);
@@ -48,12 +53,16 @@ class Healer {
   HealingMode mode() const { return settings_.mode; }
   /// Id of a calibration of the sensor that waits to be activated; empty: none, or it has moved since.
   std::string candidate(const std::string& sensor_id) const;
+  /// When it tries again; nothing: it is not waiting to.
+  std::optional<Clock::time_point> next_attempt(const std::string& sensor_id) const;
 
   void request_stop();
 
  private:
   struct Patient {
     bool drifted = false;
+    bool wants_all = false;      // its pose is from few postures, and could be better
+    bool is_refining = false;    // `calibration` is for that
     std::string calibration;  // under way; empty: none
     std::string candidate;
     Clock::time_point candidate_seen_at;
@@ -63,12 +72,16 @@ class Healer {
   };
   void run();
   void attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
+  void cancel(const std::string& calibration_id, std::unique_lock<std::mutex>& lock);
+  api::CalibrationRequest next_request(const std::string& sensor_id) const;
+  bool tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const;
   Clock::duration pause_after(int attempts) const;
   void plan(Patient& patient, Clock::time_point now) const;
   bool has_candidate(const std::string& sensor_id, const Patient& patient) const;
 
   const HealerSettings settings_;
   const Start start_;
+  const Cancel cancel_;
   const LastMove last_move_;
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -35,6 +35,7 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
           [this](auto& sensor, auto views, auto& result) { return review(sensor, views, result); }),
       healer_(
           settings_.healing, [this](const auto& request) { return start_calibration(request); },
+          [this](const auto& calibration_id) { (void)jobs_.cancel(calibration_id); },
           [this](const auto& sensor_id) { return entries_.at(sensor_id)->sensor->moved_at(); }) {}
 
 LiveCell::~LiveCell() {
@@ -201,6 +202,8 @@ Result<api::DriftReport> LiveCell::drift(std::string_view sensor_id) const {
   auto report = (*entry)->sensor->drift();
   report.healing = name_of(healer_.mode());
   report.candidate = healer_.candidate(report.sensor_id);
+  if (const auto next = healer_.next_attempt(report.sensor_id))
+    report.healing_in = std::max(Clock::duration(0), *next - Clock::now());
   return report;
 }
 

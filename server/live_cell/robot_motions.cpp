@@ -169,7 +169,10 @@ api::MotionsReport RobotMotions::list() const {
   }
   report.enabled = settings_.enabled && mover != nullptr;
   for (const auto& [name, unused] : settings_.routes_rad) report.routes.push_back(name);
-  if (!report.enabled) return report;
+  if (!report.enabled) {
+    report.hindrance = fail(ApiError::motion_disabled).message();
+    return report;
+  }
   const auto doubt = mover->doubt();
   report.hindrance = doubt ? doubt->message() : std::string();
   return report;

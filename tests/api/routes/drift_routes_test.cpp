@@ -15,6 +15,7 @@ TEST_F(DriftRoutes, VerdictStatisticAndSeriesAreShown) {
   drift.watched = true;
   drift.healing = "ask";
   drift.candidate = "c7";
+  drift.healing_in = Seconds(8);
   drift.now.verdict = DriftVerdict::scene_changed;
   drift.now.statistic = 3;
   drift.now.threshold = 11;
@@ -24,6 +25,7 @@ TEST_F(DriftRoutes, VerdictStatisticAndSeriesAreShown) {
   EXPECT_EQ(body().at("verdict"), "scene_changed");
   EXPECT_EQ(body().at("threshold").to_number<double>(), 11);
   EXPECT_EQ(body().at("candidate"), "c7");
+  EXPECT_EQ(body().at("healing_in_s").to_number<double>(), 8);
   EXPECT_NEAR(body().at("series").at(0).at("age_s").to_number<double>(), 5, 2);
   EXPECT_EQ(body().at("events").at(0).at("verdict"), "scene_changed");
   EXPECT_TRUE(body().at("age_s").is_null());

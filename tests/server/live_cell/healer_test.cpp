@@ -21,7 +21,7 @@ class Healing : public ::testing::Test {
     settings.cooldown = cooldown;
     healer_ = std::make_unique<Healer>(
         settings, [this](const auto& request) { return start(request); },
-        [this](const auto&) { return last_move_.load(); });
+        [this](const auto& id) { cancel(id); }, [this](const auto&) { return last_move_.load(); });
   }
   Result<api::CalibrationReport> start(const api::CalibrationRequest& request) {
     const std::lock_guard lock(mutex_);
@@ -35,6 +35,11 @@ class Healing : public ::testing::Test {
     report.id = "c" + std::to_string(requests_.size());
     return report;
   }
+  void cancel(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    cancelled_.push_back(id);
+    changed_.notify_all();
+  }
   bool wait_for(std::size_t requests, Clock::duration patience = 20s) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, patience, [&] { return requests_.size() >= requests; });
@@ -45,12 +50,15 @@ class Healing : public ::testing::Test {
     pose.state = state;
     healer_->on_pose(pose);
   }
-  void end(const std::string& id, api::JobStatus status, bool activate = true) {
+  void end(const std::string& id, api::JobStatus status, bool activate = true, double sigma_m = 1e-4) {
     api::CalibrationReport report;
     report.id = id;
     report.sensor_id = "eye";
     report.status = status;
     report.activate = activate;
+    report.result.emplace();
+    report.result->sigma_position_m = sigma_m;
+    report.result->sigma_rotation_rad = 1e-4;
     report.finished = std::chrono::system_clock::now();
     healer_->on_calibration(report, Clock::now());
   }
@@ -58,6 +66,7 @@ class Healing : public ::testing::Test {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<api::CalibrationRequest> requests_;
+  std::vector<std::string> cancelled_;
   int busy_ = 0;
   std::atomic<Clock::time_point> last_move_{Clock::time_point()};
   std::unique_ptr<Healer> healer_;  // last: its thread uses the others
@@ -94,6 +103,52 @@ TEST_F(Healing, SensorThatIsKnockedAgainAndAgainIsNotCalibratedWithoutEnd) {
   }
   set_state(api::PoseState::drifted);
   EXPECT_FALSE(wait_for(5, 300ms));
+}
+
+TEST_F(Healing, QuickResultThatTellsTooLittleIsFollowedByAFullCalibration) {
+  begin(HealingMode::automatic, 0ms);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  set_state(api::PoseState::calibrated);
+  end("c1", api::JobStatus::succeeded, true, 0.002);
+  ASSERT_TRUE(wait_for(2));
+  EXPECT_FALSE(requests_[1].patience || requests_[1].postures || requests_[1].after_move);
+  end("c2", api::JobStatus::failed);
+  EXPECT_FALSE(wait_for(3, 300ms)) << "there is a pose: nothing needs to be tried again";
+}
+
+TEST_F(Healing, QuickResultThatIsCertainIsLeftAlone) {
+  begin(HealingMode::automatic, 0ms);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  set_state(api::PoseState::calibrated);
+  end("c1", api::JobStatus::succeeded);
+  EXPECT_FALSE(wait_for(2, 300ms));
+}
+
+TEST_F(Healing, SensorThatMovesWhileItsPoseIsMadeBetterIsHealedAtOnce) {
+  begin(HealingMode::automatic, 0ms);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  set_state(api::PoseState::calibrated);
+  end("c1", api::JobStatus::succeeded, true, 0.002);
+  ASSERT_TRUE(wait_for(2));
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(3));
+  EXPECT_EQ(cancelled_, std::vector<std::string>{"c2"});
+  EXPECT_TRUE(requests_[2].after_move && requests_[2].patience);
+}
+
+TEST_F(Healing, SaysWhenItTriesAgain) {
+  begin(HealingMode::automatic);
+  EXPECT_FALSE(healer_->next_attempt("eye"));
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::failed);
+  ASSERT_TRUE(wait_for(2));
+  end("c2", api::JobStatus::failed);
+  ASSERT_TRUE(healer_->next_attempt("eye"));
+  EXPECT_GT(*healer_->next_attempt("eye"), Clock::now() + 9min);
 }
 
 TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {

@@ -142,6 +142,7 @@ TEST_F(RobotMotionsTest, DisabledMeansThatTheMoverIsNeverAsked) {
   stand(0.1);
   EXPECT_EQ(refusal_of({"tour", {}, {}}), ApiError::motion_disabled);
   EXPECT_FALSE(cell_->motions().enabled);
+  EXPECT_FALSE(cell_->motions().hindrance.empty());
   EXPECT_TRUE(mover_.orders_.empty());
 }
 
