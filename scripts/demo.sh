@@ -55,7 +55,7 @@ for port in (8080, 0):
 build() {
   scripts/setup.sh
   cmake --preset release >"$work/cmake.log" || die "cmake failed"
-  cmake --build --preset release
+  cmake --build --preset release --target demo
 }
 
 start_simulator() {

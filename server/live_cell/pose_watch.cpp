@@ -27,6 +27,7 @@ void PoseWatch::set_stored() {
 void PoseWatch::set_drifted() {
   set_stored();
   state_ = PoseState::drifted;
+  drift_ = Drift::stored;
 }
 
 void PoseWatch::set_withheld(std::string objection) {
@@ -58,7 +59,7 @@ void PoseWatch::on_background_in_place(Clock::time_point now) {
 void PoseWatch::on_sensor_moved() {
   if (state_ == PoseState::uncalibrated || state_ == PoseState::drifted) return;
   state_ = PoseState::drifted;
-  moved_ = true;
+  drift_ = Drift::background_moved;
 }
 
 bool PoseWatch::is_check_due(Clock::time_point now) const {
@@ -92,6 +93,7 @@ void PoseWatch::disagree(Clock::time_point now) {
   const bool stands = in_place_at_ && now - *in_place_at_ < kInPlace;
   state_ = lasts && !stands && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
                                                                                   : PoseState::unverified;
+  drift_ = Drift::robot_off;
   doubt_ = stands ? Doubt::robot_off : Doubt::disagreement;
 }
 
@@ -116,6 +118,21 @@ std::string PoseWatch::doubt() const {
   return "no check has passed since the pose was restored; it is checked when the robot holds still in view";
 }
 
+std::string PoseWatch::drift() const {
+  switch (drift_) {
+    case Drift::background_moved:
+      return "the sensor has moved: what stands around the robot is no longer where it saw it; calibrate "
+             "again, or wait for it where drift.healing does so";
+    case Drift::robot_off:
+      return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
+             "stood before it, activate the calibration again";
+    case Drift::stored:
+      break;
+  }
+  return "the pose had drifted before calibrd was started again; calibrate again, or wait for it where "
+         "drift.healing does so";
+}
+
 bool PoseWatch::is_plausible() const {
   return state_ != PoseState::uncalibrated && state_ != PoseState::drifted && objection_.empty();
 }
@@ -132,11 +149,7 @@ std::string PoseWatch::reason(Clock::time_point now) const {
     case PoseState::unverified:
       return doubt();
     case PoseState::drifted:
-      if (moved_)
-        return "the sensor has moved: what stands around the robot is no longer where it saw it; calibrate "
-               "again, or wait for it where drift.healing does so";
-      return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
-             "stood before it, activate the calibration again";
+      return drift();
     case PoseState::calibrated:
       break;
   }

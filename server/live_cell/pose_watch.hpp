@@ -65,6 +65,7 @@ class PoseWatch {
  private:
   void agree(Clock::time_point now);
   std::string doubt() const;
+  std::string drift() const;
   void disagree(Clock::time_point now);
 
   PoseWatchSettings settings_;
@@ -74,7 +75,8 @@ class PoseWatch {
   std::string objection_;
   int disagreements_ = 0;  // in a row
   Clock::time_point disagrees_since_;
-  bool moved_ = false;  // drifted by the background's word
+  enum class Drift { background_moved, robot_off, stored };
+  Drift drift_ = Drift::robot_off;  // why it has drifted
   std::optional<Clock::time_point> in_place_at_;
   std::optional<Clock::time_point> checked_at_, passed_at_, evidence_at_;
   PoseCheck last_;

@@ -99,6 +99,7 @@ TEST_F(Watch, DriftSurvivesARestart) {
   watch_.set_drifted();
   watch_.on_check(kAgrees, at(1s));
   EXPECT_EQ(watch_.state(), PoseState::drifted);
+  EXPECT_NE(watch_.reason(at(1s)).find("before calibrd was started"), std::string::npos);
 }
 
 TEST_F(Watch, SomebodyPassingByIsNoDrift) {
