@@ -84,6 +84,8 @@ std::optional<BackgroundAlignment> align_background(const BackgroundMap& map, st
   if (last.pairs < kLeastPairs) return std::nullopt;
   found.on_planes = static_cast<double>(last.on_planes) / static_cast<double>(last.points);
   found.inliers = static_cast<double>(last.inliers) / static_cast<double>(last.on_planes);
+  const Sums before = collect(map, depth_m, robot, Pose::Identity(), kLastKernel_m);
+  found.in_place = static_cast<double>(before.inliers) / static_cast<double>(before.points);
   if (found.on_planes < kLeastOnPlanes || found.inliers < kLeastInliers) return std::nullopt;
   return found;
 }

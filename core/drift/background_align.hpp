@@ -17,6 +17,8 @@ struct BackgroundAlignment {
   /// Share of the frame's points that meet a remembered plane (not an edge, not what was never seen) ...
   double on_planes = 0;
   double inliers = 0;  ///< ... and of these, that lie on it
+  /// Share of the frame's points that would lie on the background, had the sensor not moved.
+  double in_place = 0;
 };
 
 /// Pulls a frame onto the background by projective point-to-plane pairs, kernel narrowing from 0.2 m: for

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/check_pose.hpp"
 #include "core/registration/linearization.hpp"
 
 namespace calibrd {
@@ -32,13 +33,26 @@ constexpr double kLeastShare = 0.35;
 /// as far as it likes, and leak into what the wall does show. Who has moved farther is searched for.
 constexpr double kVague = 0.02, kVagueOffset_m = 0.1;
 
-constexpr double kSpuriousSafety = 1.5;
+/// What is left of two large numbers that hardly differ is noise: what a direction tells must be three times
+/// what a plain wall would seem to.
+constexpr double kSpuriousSafety = 3;
 /// Share of a frame's covariance that no other frame averages out: bumps that were no planes, a part that
 /// hangs before them. Where the background shows a direction well it is next to nothing.
 constexpr double kUnmodelledShare = 0.2;
-using Sums = Eigen::Matrix<double, BackgroundMatcher::kParameters, BackgroundMatcher::kParameters>;
-using Slope = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, 1>;
-using Products = Eigen::Matrix<float, BackgroundMatcher::kParameters + 1, BackgroundMatcher::kParameters + 1>;
+/// A shift of less squares than this, tolerance and noise taken off, needs no support.
+constexpr double kNoShift = 1;
+
+using Sums = BackgroundMatrix;
+using Slope = Eigen::Matrix<float, kBackgroundParameters + 1, 1>;
+using Products = Eigen::Matrix<float, kBackgroundParameters + 1, kBackgroundParameters + 1>;
+
+int tiles_per_row(const CameraModel& grid) { return (grid.width - 1) / kTileSide + 1; }
+
+BackgroundVector vague_information() {
+  BackgroundVector information = BackgroundVector::Constant(1 / (kVague * kVague));
+  information[6] = 1 / (kVagueOffset_m * kVagueOffset_m);
+  return information;
+}
 
 /// Covariance that is left when part of the information is none.
 Sums without(const Sums& spurious, const Sums& information, const Sums& vague) {
@@ -51,10 +65,11 @@ Sums without(const Sums& spurious, const Sums& information, const Sums& vague) {
 }  // namespace
 
 struct BackgroundMatcher::Fit {
-  Parameters solution = Parameters::Zero();
-  Information information = Information::Zero();
-  Parameters gradient = Parameters::Zero();
-  Information covariance = Information::Zero();
+  BackgroundVector at = BackgroundVector::Zero(), solution = BackgroundVector::Zero();
+  BackgroundMatrix information = BackgroundMatrix::Zero();
+  BackgroundVector gradient = BackgroundVector::Zero();
+  BackgroundMatrix covariance = BackgroundMatrix::Zero();
+  std::vector<TileSums> tiles;
   double squares = 0, cluster_squares = 0, scatter = 1, common = 0, worth = 1;
   std::size_t used = 0, around = 0;
   bool explains_most() const {
@@ -79,7 +94,7 @@ void BackgroundMatcher::refresh() {
       Row row{cell,
               static_cast<std::uint32_t>(y / kClusterSide) * per_row +
                   static_cast<std::uint32_t>(x / kClusterSide),
-              known.sigma_m};
+              static_cast<std::uint32_t>(y / kTileSide * tiles_per_row(grid) + x / kTileSide), known.sigma_m};
       row.slope.head<3>() = -z * z * d.cross(m);
       row.slope.segment<3>(3) = -z * m;
       row.slope[6] = 1;
@@ -87,6 +102,8 @@ void BackgroundMatcher::refresh() {
       add_spurious(known, d);
     }
   }
+  std::ranges::stable_sort(rows_, {}, &Row::tile);
+  tiles_ = static_cast<std::size_t>(tiles_per_row(grid) * ((grid.height - 1) / kTileSide + 1));
   clusters_ =
       static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
 }
@@ -115,24 +132,30 @@ void BackgroundMatcher::sample(const DepthImage& depth) {
   }
 }
 
-void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m,
-                                Fit& fit) {
+void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const BackgroundVector& at,
+                                double kernel_m, Fit& fit) {
   fit = {};
+  fit.at = at;
+  fit.tiles.resize(tiles_);
   whitened_.clear();
   pulls_.assign(clusters_, 0.0);
   Slope start = Slope::Zero();
   start.head<kParameters>() = at.cast<float>();
   Products products = Products::Zero();  // in single precision over some rows, then in double
   Slope gradient = Slope::Zero();
-  std::size_t pending = 0;
+  std::size_t pending = 0, tile = 0;
   const auto flush = [&] {
-    fit.information += products.topLeftCorner<kParameters, kParameters>().cast<double>();
-    fit.gradient += gradient.head<kParameters>().cast<double>();
+    fit.tiles[tile].information += products.topLeftCorner<kParameters, kParameters>().cast<double>();
+    fit.tiles[tile].gradient += gradient.head<kParameters>().cast<double>();
     products.setZero();
     gradient.setZero();
     pending = 0;
   };
   for (const Row& row : rows_) {
+    if (row.tile != tile) {
+      flush();
+      tile = row.tile;
+    }
     const float z = depth_m_[row.cell];
     if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
     const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
@@ -153,6 +176,10 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Param
     ++fit.used;
   }
   flush();
+  for (const TileSums& sums : fit.tiles) {
+    fit.information += sums.information;
+    fit.gradient += sums.gradient;
+  }
   for (const double pull : pulls_) fit.cluster_squares += pull * pull;
 }
 
@@ -167,10 +194,9 @@ BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robo
 
 BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> robot,
                                                   double first_kernel_m) {
-  Parameters at = Parameters::Zero();
+  BackgroundVector at = BackgroundVector::Zero();
   at[6] = last_offset_m_;
-  Parameters vague = Parameters::Constant(1 / (kVague * kVague));
-  vague[6] = 1 / (kVagueOffset_m * kVagueOffset_m);
+  const BackgroundVector vague = vague_information();
   double kernel_m = first_kernel_m;
   Fit fit;
   for (int i = 0; i < kSteps; ++i) {
@@ -179,9 +205,9 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
     fit.scatter = robust_sigma(whitened_);
     const double correlation = std::max(1.0, fit.cluster_squares / fit.squares);
     const double worth = 1 / (fit.scatter * fit.scatter * correlation);
-    Information information = worth * fit.information;
+    BackgroundMatrix information = worth * fit.information;
     information.diagonal() += vague;
-    const Eigen::LDLT<Information> solver(information);
+    const Eigen::LDLT<BackgroundMatrix> solver(information);
     at += solver.solve(worth * fit.gradient - vague.cwiseProduct(at));
     fit.worth = worth;
     kernel_m = std::clamp(kKernelSigmas * fit.scatter * kTypicalSigma_m, kLeastKernel_m, first_kernel_m);
@@ -190,6 +216,26 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> 
   const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
   fit.covariance = without(fit.worth * seen * spurious_, fit.worth * fit.information, vague.asDiagonal());
   return fit;
+}
+
+void BackgroundMatcher::find_support(const Fit& fit, const Matrix6d& turn,
+                                     BackgroundObservation& observation) const {
+  observation.supported_shift = observation.shift;
+  observation.supported_covariance = observation.covariance;
+  const Matrix6d move = tolerance_.cwiseInverse().asDiagonal() * shift_of_point(map_.middle_sensor());
+  const Matrix6d covariance = fit.covariance.topLeftCorner<6, 6>();
+  if (squares_beyond_tolerance(move * fit.solution.head<6>(), move * covariance * move.transpose()) <
+      kNoShift)
+    return;
+  const BackgroundVector vague = vague_information();
+  const auto least =
+      least_shift_without_a_window({fit.tiles, tiles_per_row(map_.grid()), fit.at, vague, fit.worth}, move);
+  if (!least) return;
+  const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
+  const Sums left = without(fit.worth * seen * spurious_, fit.worth * (fit.information - least->left_out),
+                            vague.asDiagonal());
+  observation.supported_shift = turn * least->solution.head<6>();
+  observation.supported_covariance = turn * left.topLeftCorner<6, 6>() * turn.transpose();
 }
 
 void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit& fit,
@@ -227,6 +273,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   const Matrix6d turn = turn_of_axes(R_base_sensor);
   observation.shift = turn * found.solution.head<6>();
   observation.covariance = turn * found.covariance.topLeftCorner<6, 6>() * turn.transpose();
+  find_support(found, turn, observation);
   observation.offset_change_m = found.solution[6];
   observation.offset_sigma_m = std::sqrt(found.covariance(6, 6));
   observation.scatter = found.scatter;

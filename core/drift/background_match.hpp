@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/drift/background_map.hpp"
+#include "core/drift/window_support.hpp"
 #include "core/geometry/pose.hpp"
 
 namespace calibrd {
@@ -26,6 +27,10 @@ struct BackgroundObservation {
   /// Where the sensor seems to be, as perturbed() takes it, from the pose at which the background was learnt.
   Vector6d shift = Vector6d::Zero();
   Matrix6d covariance = Matrix6d::Zero();
+  /// The same without the one part of the image that speaks loudest for a shift: see
+  /// least_shift_without_a_window().
+  Vector6d supported_shift = Vector6d::Zero();
+  Matrix6d supported_covariance = Matrix6d::Zero();
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
   /// Of that what can be relied on: before a single wall an offset looks like a shift.
@@ -53,10 +58,12 @@ struct BackgroundObservation {
 /// direction that the background does not show has a large one. One thread at a time.
 class BackgroundMatcher {
  public:
-  static constexpr std::size_t kParameters = 7;  ///< perturbed()'s six in sensor axes, range offset
-
   /// `map` must outlive it.
-  explicit BackgroundMatcher(const BackgroundMap& map) : map_(map) { refresh(); }
+  /// `tolerance`: of turn (rad) and shift (m) of the middle of the background.
+  explicit BackgroundMatcher(const BackgroundMap& map, const Vector6d& tolerance = Vector6d::Constant(5e-4))
+      : map_(map), tolerance_(tolerance) {
+    refresh();
+  }
   /// To be called when parts of the map have changed ...
   void refresh();
   /// ... and when it is another one.
@@ -76,10 +83,9 @@ class BackgroundMatcher {
   const std::vector<float>& depth_m() const { return depth_m_; }
 
  private:
-  using Parameters = Eigen::Matrix<double, kParameters, 1>;
-  using Information = Eigen::Matrix<double, kParameters, kParameters>;
+  static constexpr int kParameters = kBackgroundParameters;
   struct Row {
-    std::uint32_t cell = 0, cluster = 0;
+    std::uint32_t cell = 0, cluster = 0, tile = 0;
     float sigma_m = 0;
     /// Of the depth by the parameters; an eighth, 0, makes two whole vectors of it.
     Eigen::Matrix<float, kParameters + 1, 1> slope = Eigen::Matrix<float, kParameters + 1, 1>::Zero();
@@ -89,13 +95,17 @@ class BackgroundMatcher {
   void add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray);
   Fit fit(std::span<const std::uint8_t> robot);
   Fit descend(std::span<const std::uint8_t> robot, double first_kernel_m);
-  void collect(std::span<const std::uint8_t> robot, const Parameters& at, double kernel_m, Fit& fit);
+  void collect(std::span<const std::uint8_t> robot, const BackgroundVector& at, double kernel_m, Fit& fit);
   void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
 
+  void find_support(const Fit& fit, const Matrix6d& turn, BackgroundObservation& observation) const;
+
   const BackgroundMap& map_;
+  const Vector6d tolerance_;
   std::vector<Row> rows_;
-  Information spurious_ = Information::Zero();  // information that is but noise of the planes' normals
-  std::size_t clusters_ = 0;
+  BackgroundMatrix spurious_ =
+      BackgroundMatrix::Zero();  // information that is but noise of the planes' normals
+  std::size_t clusters_ = 0, tiles_ = 0;
   std::vector<float> depth_m_;
   std::vector<CellState> states_;
   std::vector<float> whitened_;

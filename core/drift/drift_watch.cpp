@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/drift/drift_watch.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -14,22 +13,22 @@ constexpr int kQuietFrames = 10;
 constexpr double kLost_s = 0.5;     // a background that is nowhere for so long: the sensor looks elsewhere
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr double kLeastLeft = 0.1;  // share of it that is where it was
+/// Where a moved sensor is now is told pixel by pixel only when so much of the background is still where it
+/// was: a fit to less settles anywhere.
+constexpr double kLeastSame = 0.8;
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
-/// Where a moved sensor is now is told only when it is known so well, and pixel by pixel only when so much of
-/// the background is still where it was: a fit to less settles anywhere.
-constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01, kLeastSame = 0.8;
-constexpr double kMuch = 0.35, kWhole = 0.9;  // shares of a frame
 constexpr double kRobotHolds_s = 10;
 constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
 
-double worst_sigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
-                       .eigenvalues()
-                       .maxCoeff());
+Vector6d tolerance_of(const ShiftTestSettings& settings) {
+  Vector6d tolerance;
+  tolerance << Eigen::Vector3d::Constant(settings.tolerance_rad),
+      Eigen::Vector3d::Constant(settings.tolerance_m);
+  return tolerance;
 }
 
 }  // namespace
@@ -40,7 +39,7 @@ DriftWatch::DriftWatch(const VirtualCell& cell, const CameraModel& camera, const
       robot_(cell, camera),
       tips_(cell.robot().tip_links()),
       map_(camera),
-      matcher_(map_),
+      matcher_(map_, tolerance_of(settings.shift)),
       scene_(settings.scene, map_.grid().width),
       test_(settings.shift) {
   report_.threshold = test_.threshold();
@@ -115,51 +114,14 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
   return report_;
 }
 
-/// An alignment that leaves a direction open may slide along it as far as it likes, and is no evidence.
-bool DriftWatch::is_pinned(const BackgroundAlignment& found) const {
-  const Matrix6d move = shift_of_point(map_.middle_sensor());
-  const Matrix6d covariance = move * found.covariance * move.transpose();
-  return worst_sigma(covariance.topLeftCorner<3, 3>()) < kSeenWithin_rad &&
-         worst_sigma(covariance.bottomRightCorner<3, 3>()) < kSeenWithin_m;
-}
-
-/// All that is seen is the background seen from elsewhere, whatever directions it leaves open.
-bool DriftWatch::lies_elsewhere(const BackgroundAlignment& found) const {
-  if (found.on_planes < kMuch || found.inliers < kWhole) return false;
-  Matrix6d move = shift_of_point(map_.middle_sensor());  // in units of what is known well
-  move.topRows<3>() /= kSeenWithin_rad;
-  move.bottomRows<3>() /= kSeenWithin_m;
-  const Vector6d shift = move * difference(Pose::Identity(), found.T_learnt_now);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(move * found.covariance * move.transpose());
-  double square = 0;
-  for (Eigen::Index i = 0; i < 6 && axes.eigenvalues()[i] < 1; ++i)
-    square += std::pow(axes.eigenvectors().col(i).dot(shift), 2);
-  return square > 1;
-}
-
-/// The background is not where it was, pixel by pixel: perhaps the sensor sees it from elsewhere.
-void DriftWatch::realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation) {
-  if (observation.share(CellState::dark) > 0.8) return;
-  std::optional<BackgroundAlignment> found;
-  if (T_learnt_now_) found = align_background(map_, matcher_.depth_m(), {}, *T_learnt_now_);
-  if (!found) found = align_background(map_, matcher_.depth_m(), robot, Pose::Identity());
-  if (!found || !is_pinned(*found)) {
-    lies_elsewhere_ = found && lies_elsewhere(*found);
-    return T_learnt_now_.reset();
-  }
-  T_learnt_now_ = found->T_learnt_now;
-  const Matrix6d turn = turn_of_axes(T_base_sensor_.linear());
-  observation.has_evidence = observation.realigned = true;
-  observation.shift = difference(T_base_sensor_, T_base_sensor_ * found->T_learnt_now);
-  observation.covariance = turn * found->covariance * turn.transpose();
-}
-
 void DriftWatch::test(const BackgroundObservation& observation) {
   if (!observation.has_evidence) return on_gap();
   const Matrix6d move = shift_of_point(T_base_sensor_.linear() * map_.middle_sensor());
-  innovation_ = Innovation{move * observation.shift, move * observation.covariance * move.transpose(),
-                           observation.common_share};
-  test_.add(innovation_->turn_shift, innovation_->covariance, innovation_->common_share);
+  innovation_ =
+      Innovation{move * observation.shift, move * observation.covariance * move.transpose(),
+                 move * observation.supported_shift,
+                 move * observation.supported_covariance * move.transpose(), observation.common_share};
+  test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
   // What the test tolerates, because all frames have it in common, is not known either.
   const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
   if (tolerated * worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&

@@ -65,6 +65,8 @@ class DriftWatch {
   struct Innovation {
     Vector6d turn_shift;
     Matrix6d covariance;
+    Vector6d supported_shift;  ///< what the test is given of it: see BackgroundObservation
+    Matrix6d supported_covariance;
     double common_share;  ///< as BackgroundObservation
   };
   const std::optional<Innovation>& innovation() const { return innovation_; }
@@ -95,7 +97,11 @@ class DriftWatch {
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
+  static double worst_sigma(const Eigen::Matrix3d& covariance);
+
   static constexpr double kEvidence_s = 1;  // what was seen so lately is of now
+  /// Where a moved sensor is now is told only when it is known so well.
+  static constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01;
 
   DriftSettings settings_;
   CameraModel camera_;

@@ -53,7 +53,7 @@ class Peaks {
 };
 
 void feed(ShiftTest& test, const RecordedInnovation& one) {
-  test.add(one.innovation.turn_shift, one.innovation.covariance, one.innovation.common_share);
+  test.add(one.innovation.supported_shift, one.innovation.supported_covariance, one.innovation.common_share);
 }
 
 json::object measured(const std::vector<RecordedInnovation>& all, const Block& block) {

@@ -15,9 +15,9 @@ using Record = std::array<double, 2 + 6 + 21 + 1>;
 void InnovationWriter::write(std::uint32_t cell, double stamp_s, const DriftWatch::Innovation& innovation) {
   Record record{static_cast<double>(cell), stamp_s};
   std::size_t at = 2;
-  for (int i = 0; i < 6; ++i) record[at++] = innovation.turn_shift[i];
+  for (int i = 0; i < 6; ++i) record[at++] = innovation.supported_shift[i];
   for (int row = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column) record[at++] = innovation.covariance(row, column);
+    for (int column = 0; column <= row; ++column) record[at++] = innovation.supported_covariance(row, column);
   record[at] = innovation.common_share;
   file_.write(reinterpret_cast<const char*>(record.data()), sizeof(record));
 }
@@ -31,10 +31,10 @@ std::vector<RecordedInnovation> read_innovations(const std::filesystem::path& pa
     one.cell = static_cast<std::uint32_t>(record[0]);
     one.stamp_s = record[1];
     std::size_t at = 2;
-    for (int i = 0; i < 6; ++i) one.innovation.turn_shift[i] = record[at++];
+    for (int i = 0; i < 6; ++i) one.innovation.supported_shift[i] = record[at++];
     for (int row = 0; row < 6; ++row)
       for (int column = 0; column <= row; ++column)
-        one.innovation.covariance(row, column) = one.innovation.covariance(column, row) = record[at++];
+        one.innovation.supported_covariance(row, column) = one.innovation.covariance(column, row) = record[at++];
     one.innovation.common_share = record[at];
     all.push_back(one);
   }

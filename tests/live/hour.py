@@ -109,7 +109,8 @@ class Watch:
         self.seconds[said["verdict"]] += passed
         self.alarms[said["verdict"]] += said["verdict"] != self.last
         self.last = said["verdict"]
-        self.most = max(self.most, said["statistic"] / said["threshold"])
+        if said["watched"]:
+            self.most = max(self.most, said["statistic"] / said["threshold"])
         self.invalid_s += passed * (not pose["valid"])
         self.calibrations.add(known(pose)["calibration"])
         if pose["valid"]:

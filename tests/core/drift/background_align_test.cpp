@@ -39,11 +39,22 @@ void expect_found(double shift_m, double turn_deg) {
     EXPECT_LT(error.tail<3>().norm(), 0.008) << seed;
     EXPECT_LT(error.head<3>().norm(), 0.006) << seed;
     EXPECT_GT(found->inliers, 0.6) << seed;
+    EXPECT_GT(found->inliers * found->on_planes, 1.5 * found->in_place) << seed;
   }
 }
 
 TEST(AlignBackground, FindsAKnockOf30mmAnd3Degrees) { expect_found(0.03, 3); }
 TEST(AlignBackground, FindsAKnockOf60mmAnd5Degrees) { expect_found(0.06, 5); }
+
+TEST(AlignBackground, SaysHowMuchOfWhatASensorThatStandsSeesIsInPlace) {
+  Room room = Room::furnished();
+  const BackgroundMap map = learnt(room);
+  room.hidden_share = 0.3;
+  const auto found = aligned(room, map, true_T_base_sensor());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->in_place, 0.6, 0.1);
+  EXPECT_LT(found->inliers * found->on_planes, 1.1 * found->in_place);
+}
 
 TEST(AlignBackground, FindsNothingWhereNothingIsKnown) {
   Room room = Room::furnished();

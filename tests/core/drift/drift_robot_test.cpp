@@ -120,7 +120,7 @@ TEST_F(BeforeAWall, TheRobotsWordHoldsForAWhileAsLongAsTheWallIsSeen) {
   EXPECT_EQ(watch_for(7), DriftVerdict::no_evidence);
   check(Vector6d::Zero());
   watch_for(0.1);
-  dark_ = true;
+  dark_share_ = 1;
   EXPECT_EQ(watch_for(3), DriftVerdict::no_evidence);
 }
 

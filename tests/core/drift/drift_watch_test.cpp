@@ -164,10 +164,10 @@ TEST_F(DriftWatchTest, TheRangeThatWandersIsABias) {
 
 TEST_F(DriftWatchTest, DarkIsNoEvidence) {
   watch_for(1);
-  dark_ = true;
+  dark_share_ = 1;
   EXPECT_EQ(watch_for(1.5), DriftVerdict::no_evidence);
   EXPECT_FALSE(watch_.is_in_place());
-  dark_ = false;
+  dark_share_ = 0;
   EXPECT_EQ(watch_for(1.5), DriftVerdict::in_place);
 }
 
@@ -194,7 +194,7 @@ TEST_F(DriftWatchTest, WhereAMovedSensorIsIsToldNoLongerOnceItSeesNothingOfTheBa
   moved_ = shifted(0.03, 0, 0);
   watch_for(1);
   ASSERT_TRUE(watch_.report().T_base_sensor_seen);
-  dark_ = true;
+  dark_share_ = 1;
   watch_for(1.5);
   EXPECT_FALSE(watch_.report().T_base_sensor_seen);
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);

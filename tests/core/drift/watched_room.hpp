@@ -59,7 +59,8 @@ class WatchedRoom : public ::testing::Test {
     for (const double end = now_s_ + seconds; now_s_ < end; now_s_ += kFrame_s, ++frames_) {
       if (happen) happen();
       View view = room_.seen_from(perturbed(true_T_base_sensor(), moved_), joints_now(), now_s_);
-      if (dark_) std::ranges::fill(view.depth.raw, std::uint16_t{0});
+      for (int x = 0; x < dark_share_ * view.depth.width; ++x)
+        for (int y = 0; y < view.depth.height; ++y) view.depth.raw[view.depth.index(x, y)] = 0;
       if (joints_lost_) view.joint_positions_rad.clear();
       watch_.add_frame(view);
       if (verdict() == DriftVerdict::sensor_moved && moved_at_frame_ < 0) moved_at_frame_ = frames_;
@@ -73,7 +74,8 @@ class WatchedRoom : public ::testing::Test {
   VirtualCell cell_;
   DriftWatch watch_;
   Vector6d moved_ = Vector6d::Zero();  // the sensor, as perturbed() takes it
-  bool dark_ = false, joints_lost_ = false;
+  double dark_share_ = 0;  // of the picture, from its left
+  bool joints_lost_ = false;
   double now_s_ = 100;
   int frames_ = 0, moved_at_frame_ = -1;
 };

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/drift/window_support.hpp"
+
+#include "tests/core/drift/watched_room.hpp"
+
+namespace calibrd {
+namespace {
+
+using namespace test;
+
+constexpr double kPushed_m = 0.008;
+
+/// Wall and floor leave open a slide along both, the sensor's x; the left faces of boxes show it. Sensor
+/// axes.
+Room corner(std::initializer_list<double> boxes_y) {
+  Room room = Room::single_wall();
+  room.blocks.push_back({{0, 1.1, 0}, {20, 0.1, 20}});
+  for (const double y : boxes_y) room.blocks.push_back({{0.6, y, 1.15}, {0.4, 0.3, 0.9}});
+  return room;
+}
+
+Pose in_sensor_axes(double x, double y, double z) {
+  return true_T_base_sensor() * Pose(Eigen::Translation3d(x, y, z));
+}
+
+class PushedBox : public WatchedRoom {
+ protected:
+  explicit PushedBox(Room room = corner({0.3})) : WatchedRoom(std::move(room)) {}
+  BackgroundObservation seen_from(const Pose& T_base_sensor) {
+    BackgroundMatcher matcher(watch_.background());
+    const View view = room_.seen_from(T_base_sensor, joints_now());
+    return matcher.match(view.depth, mask_of(room_, joints_now()), true_T_base_sensor().linear());
+  }
+  static double along_x(const Vector6d& shift) {
+    return shift.tail<3>().dot(true_T_base_sensor().linear().col(0));
+  }
+  static double sigmas(const Vector6d& shift, const Matrix6d& covariance) {
+    return std::sqrt(shift.dot(covariance.ldlt().solve(shift)));
+  }
+};
+
+class TwoBoxes : public PushedBox {
+ protected:
+  TwoBoxes() : PushedBox(corner({0.3, -0.45})) {}
+};
+
+TEST_F(PushedBox, LooksLikeAMoveUntilItsPartOfTheImageIsLeftOut) {
+  room_.blocks.back().middle.x() += kPushed_m;
+  const auto seen = seen_from(true_T_base_sensor());
+  ASSERT_TRUE(seen.has_evidence);
+  EXPECT_GT(sigmas(seen.shift, seen.covariance), 4);
+  EXPECT_LT(sigmas(seen.supported_shift, seen.supported_covariance), 2);
+}
+
+TEST_F(PushedBox, IsNoMoveOfTheSensor) {
+  watch_for(4);
+  const double largest = [&] {
+    double statistic = 0;
+    watch_for(6, [&] {
+      if (frames_ % 6 == 0 && room_.blocks.back().middle.x() < 0.65)
+        room_.blocks.back().middle.x() += kPushed_m;
+      statistic = std::max(statistic, watch_.report().statistic);
+    });
+    return statistic;
+  }();
+  EXPECT_LT(largest, 0.5 * watch_.report().threshold);
+  EXPECT_EQ(moved_at_frame_, -1);
+}
+
+TEST_F(TwoBoxes, TogetherShowAMoveAlongThatDirection) {
+  const auto seen = seen_from(in_sensor_axes(kPushed_m, 0, 0));
+  EXPECT_NEAR(along_x(seen.supported_shift), kPushed_m, 0.003);
+  watch_for(4);
+  moved_.tail<3>() = kPushed_m * true_T_base_sensor().linear().col(0);
+  EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
+}
+
+TEST_F(PushedBox, AMoveThatWallAndFloorShowIsFound) {
+  watch_for(4);
+  moved_.tail<3>() = 0.003 * true_T_base_sensor().linear().col(1);
+  EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
+}
+
+TEST_F(PushedBox, InTheLittleThatIsLeftOfTheBackgroundIsNoMoveEither) {
+  watch_for(4);
+  dark_share_ = 0.7;
+  watch_for(1);
+  room_.blocks.back().middle.x() += 0.04;
+  watch_for(3);
+  EXPECT_EQ(moved_at_frame_, -1);
+}
+
+TEST(WindowSupport, OfAgreeingTilesNoneIsMissed) {
+  std::vector<TileSums> tiles(16);
+  for (auto& tile : tiles) {
+    tile.information.setIdentity();
+    tile.gradient.setConstant(3);
+  }
+  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  const auto least = least_shift_without_a_window(fit, Matrix6d::Identity());
+  ASSERT_TRUE(least);
+  EXPECT_TRUE(least->solution.isApproxToConstant(3));
+  EXPECT_TRUE(least->left_out.isApprox(9 * BackgroundMatrix::Identity()));
+}
+
+TEST(WindowSupport, TheOneThatPullsIsLeftOut) {
+  std::vector<TileSums> tiles(16);
+  for (auto& tile : tiles) tile.information.setIdentity();
+  tiles[6].gradient.setConstant(50);
+  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  const auto least = least_shift_without_a_window(fit, Matrix6d::Identity());
+  ASSERT_TRUE(least);
+  EXPECT_TRUE(least->solution.isZero(1e-9));
+}
+
+TEST(WindowSupport, NothingSeenHasNoSupport) {
+  const std::vector<TileSums> tiles(16);
+  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  EXPECT_FALSE(least_shift_without_a_window(fit, Matrix6d::Identity()));
+}
+
+}  // namespace
+}  // namespace calibrd
