@@ -64,13 +64,11 @@ void DriftWatch::start_over() {
   scene_.reset();
   test_.reset();
   T_learnt_now_.reset();
-  check_.reset();
+  robot_word_.reset();
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
-  robot_statistic_ = before_posture_ = 0;
-  posture_.clear();
   quiet_frames_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
-  evidence_s_ = pinned_s_ = in_front_s_ = check_s_ = denied_s_ = denied_since_s_ = -1e9;
+  evidence_s_ = pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   absorbed_s_ = frame_s_;
   report_ = {};
@@ -177,14 +175,14 @@ void DriftWatch::follow_offset(const BackgroundObservation& observation, double 
 /// the background from elsewhere.
 void DriftWatch::follow_loss(const BackgroundObservation& observation, double now_s) {
   const bool elsewhere = lies_elsewhere_ || observation.share(CellState::farther) >= kLeastGone ||
-                         (observation.share(CellState::same) < kLeastLeft && is_robot_off());
+                         (observation.share(CellState::same) < kLeastLeft && robot_word_.is_off(frame_s_));
   const bool lost = !observation.has_evidence && elsewhere;
   if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;
   if (!lost) return;
   if (lost_since_s_ < 0 || now_s - lost_s_ > kGap_s) lost_since_s_ = now_s;
   lost_s_ = now_s;
   if (now_s - lost_since_s_ < kLost_s) return;
-  if (!robot_stands_since(lost_since_s_))
+  if (!robot_word_.agrees_since(lost_since_s_, frame_s_))
     moved_ = true;
   else
     denied_s_ = now_s;
@@ -215,18 +213,18 @@ bool DriftWatch::is_in_place() const {
 
 /// Something has said just now that the sensor stands, in every direction.
 bool DriftWatch::is_known_to_stand() const {
-  return frame_s_ - pinned_s_ < kEvidence_s || robot_stands_since(-1e9);
+  return frame_s_ - pinned_s_ < kEvidence_s || robot_word_.agrees_within(RobotWord::kOfNow_s, frame_s_);
 }
 
 /// A wall leaves directions open: of these the robot's word holds longer, while it works and the wall stands.
 bool DriftWatch::is_seen() const {
-  const bool told = check_ && check_->agrees && frame_s_ - check_s_ < kRobotHolds_s;
+  const bool told = robot_word_.agrees_within(kRobotHolds_s, frame_s_);
   return is_known_to_stand() || (told && frame_s_ - evidence_s_ < kEvidence_s);
 }
 
 bool DriftWatch::is_out_of_sight() const {
   return has_background() && frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s &&
-         !robot_stands_since(frame_s_ - kOutOfSight_s);
+         !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);
 }
 
 void DriftWatch::judge(double now_s) {

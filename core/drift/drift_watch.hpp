@@ -9,6 +9,7 @@
 #include "core/drift/background_align.hpp"
 #include "core/drift/background_match.hpp"
 #include "core/drift/drift_report.hpp"
+#include "core/drift/robot_word.hpp"
 #include "core/drift/scene_change.hpp"
 #include "core/drift/shift_test.hpp"
 
@@ -50,7 +51,7 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const { return is_doubtful() || (robot_statistic_ > 0 && !model_wrong_ && !moved_); }
+  bool wants_check() const { return is_doubtful() || (robot_word_.has_doubt() && !model_wrong_ && !moved_); }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
   /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden,
@@ -88,10 +89,7 @@ class DriftWatch {
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
   void on_denial();
-  void follow_posture(double sigmas);
   bool robot_denies_the_shift(double now_s) const;
-  bool robot_stands_since(double since_s) const;
-  bool is_robot_off() const;
   bool is_robots_shift_possible() const;
   bool is_known_to_stand() const;
   bool is_seen() const;
@@ -126,13 +124,8 @@ class DriftWatch {
   double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
   bool bias_changed_ = false, model_wrong_ = false;
-  // What the robot said, newest last.
-  std::optional<PoseCheck> check_;
-  double check_s_ = -1e9;
-  double robot_statistic_ = 0, before_posture_ = 0;
-  std::vector<double> joints_, posture_;  // of the last frame; of the posture that is looked at
-  double posture_sigmas_ = 0;             // mean of its comparisons
-  int posture_checks_ = 0;
+  RobotWord robot_word_;
+  std::vector<double> joints_;  // of the last frame
 };
 
 }  // namespace calibrd

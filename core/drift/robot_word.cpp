@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/drift/robot_word.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calibrd {
+namespace {
+
+constexpr double kOff_s = 0.5;  // one comparison alone says nothing of a second
+/// A comparison of a good model stays below 2.2 standard deviations of what noise, model and joint zeros
+/// explain, in nearly every posture.
+constexpr double kAllowance = 2.7, kPostureWeight = 2, kLimit = 5.5;
+constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
+constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
+
+bool is_same_posture(std::span<const double> a, std::span<const double> b) {
+  return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) < kOtherPosture_rad; });
+}
+
+}  // namespace
+
+void RobotWord::add(const PoseCheck& check, std::span<const double> joints, double now_s) {
+  if (!check.enough_evidence) return;
+  newest_ = check;
+  stamp_s_ = now_s;
+  if (!is_same_posture(posture_, joints)) {
+    posture_.assign(joints.begin(), joints.end());
+    before_posture_ = std::min(statistic_, kLimit);  // what is mended shows soon
+    posture_sigmas_ = posture_checks_ = 0;
+  }
+  const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
+  ++posture_checks_;
+  posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
+  const double word =
+      std::clamp(kPostureWeight * (posture_sigmas_ - kAllowance), -kMostPerPosture, kMostPerPosture);
+  statistic_ = std::max(0.0, before_posture_ + word);
+}
+
+bool RobotWord::agrees_within(double seconds, double now_s) const {
+  return newest_ && newest_->agrees && age_s(now_s) < seconds;
+}
+
+bool RobotWord::agrees_since(double since_s, double now_s) const {
+  return agrees_within(kOfNow_s, now_s) && stamp_s_ > since_s;
+}
+
+bool RobotWord::is_off(double now_s) const { return newest_ && !newest_->agrees && age_s(now_s) < kOff_s; }
+
+bool RobotWord::is_against() const { return statistic_ > kLimit; }
+bool RobotWord::is_against_no_more() const { return statistic_ < 0.5 * kLimit; }
+
+}  // namespace calibrd

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/calibration/check_pose.hpp"
+
+namespace calibrd {
+
+/// What comparisons of frames with the robot say of a pose: the newest one, and a CUSUM over postures of how
+/// far off the robot looks. Comparisons of one posture all err alike, and a part in the gripper may look like
+/// the robot: a posture has one word, and one posture alone says nothing against the pose. Without I/O.
+class RobotWord {
+ public:
+  void reset() { *this = RobotWord(); }
+  /// `joints`: of the frame. A comparison without enough evidence is none.
+  void add(const PoseCheck& check, std::span<const double> joints, double now_s);
+
+  const std::optional<PoseCheck>& newest() const { return newest_; }
+  double age_s(double now_s) const { return now_s - stamp_s_; }
+  /// The newest one agrees, is of after `since_s`, and of now.
+  bool agrees_since(double since_s, double now_s) const;
+  /// The newest one agrees and is not older than this.
+  bool agrees_within(double seconds, double now_s) const;
+  /// The newest one disagrees, and is of this very moment.
+  bool is_off(double now_s) const;
+
+  bool has_doubt() const { return statistic_ > 0; }
+  /// Postures on end have spoken against pose and model ...
+  bool is_against() const;
+  /// ... or do so no longer.
+  bool is_against_no_more() const;
+
+  static constexpr double kOfNow_s = 2;  ///< a comparison is of now for so long
+
+ private:
+  std::optional<PoseCheck> newest_;
+  double stamp_s_ = -1e9;
+  double statistic_ = 0, before_posture_ = 0;
+  std::vector<double> posture_;  // that is looked at
+  double posture_sigmas_ = 0;    // mean of its comparisons
+  int posture_checks_ = 0;
+};
+
+}  // namespace calibrd
