@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/json/pose_json.hpp"
 
+#include "core/geometry/canonical_rotation.hpp"
+
 namespace calibrd::api {
 
 namespace json = boost::json;
@@ -22,9 +24,7 @@ json::array translation_json(const Pose& pose) {
 }
 
 json::array rotation_xyzw_json(const Pose& pose) {
-  Eigen::Quaterniond q(pose.linear());
-  q.normalize();
-  if (q.w() < 0) q.coeffs() *= -1;
+  const auto q = canonical_quaternion(pose.linear());
   return {q.x(), q.y(), q.z(), q.w()};
 }
 

@@ -11,7 +11,7 @@ namespace calibrd::api {
 boost::json::array matrix_json(const Pose& pose);
 /// [x, y, z], m.
 boost::json::array translation_json(const Pose& pose);
-/// [x, y, z, w], unit quaternion with w >= 0.
+/// [x, y, z, w], the canonical_quaternion().
 boost::json::array rotation_xyzw_json(const Pose& pose);
 
 }  // namespace calibrd::api

@@ -14,6 +14,7 @@
 #include "core/geometry/camera_model.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/planning/next_posture.hpp"
+#include "core/robot/controller_frame.hpp"
 #include "core/sensing/images.hpp"
 
 namespace calibrd::api {
@@ -40,6 +41,7 @@ struct PoseReport {
   };
   std::string sensor_id;
   std::string base_frame;
+  std::optional<ControllerFrame> controller_frame;  ///< nothing: not configured
   std::string sensor_frame;
   PoseState state = PoseState::uncalibrated;
   bool valid = false;     ///< state is calibrated and passed_check_age is below max_unverified
@@ -136,8 +138,8 @@ struct ControllerReport {
 struct RobotReport {
   std::string model;
   std::string base_frame;
-  std::string controller_frame;
-  std::string link_state;  ///< "connecting", "streaming", "joints_stale", "silent", "faulted"
+  std::string controller_frame;  ///< empty: not configured
+  std::string link_state;        ///< "connecting", "streaming", "joints_stale", "silent", "faulted"
   std::string link_reason;
   std::uint64_t connects = 0, framing_errors = 0, rejected_values = 0;
   std::vector<std::string> joint_names;

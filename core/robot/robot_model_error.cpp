@@ -37,6 +37,9 @@ const char* text(RobotModelError code) {
              "that holds NAME) to the model search paths";
     case RobotModelError::mesh_unreadable:
       return "mesh file cannot be used; export it again as STL, Collada (.dae) or OBJ";
+    case RobotModelError::link_moves:
+      return "the link moves with the robot; use one that stands still, which the URDF joins to the base by "
+             "fixed joints alone";
   }
   return "unknown robot model error";
 }

@@ -5,7 +5,7 @@
 
 namespace calibrd {
 
-/// Why a robot model could not be loaded. Error::detail names the file, link or joint.
+/// Why a robot model, or a link of it, cannot be used. Error::detail names the file, link or joint.
 enum class RobotModelError {
   urdf_not_found = 1,
   urdf_invalid,
@@ -18,6 +18,7 @@ enum class RobotModelError {
   bad_geometry,
   mesh_not_found,
   mesh_unreadable,
+  link_moves,
 };
 
 const std::error_category& robot_model_category();

@@ -152,7 +152,6 @@ LiveCellSettings cell_settings(const Config& config, const std::string& version)
   settings.urdf = config.robot.urdf;
   settings.search_paths = config.robot.search_paths;
   settings.base_link = config.robot.base_link;
-  settings.controller_frame = config.robot.controller_frame;
   settings.joint_latency = config.robot.link.latency;
   settings.gate.stale_after = config.robot.link.stale_after;
   settings.gate.settle_time = config.calibration.settle_time;

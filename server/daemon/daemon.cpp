@@ -6,8 +6,7 @@
 
 #include "api/http/http_server.hpp"
 #include "api/routes/routes.hpp"
-#include "core/robot/nearest_name.hpp"
-#include "core/robot/robot_model_error.hpp"
+#include "core/robot/controller_frame.hpp"
 #include "drivers/sensor/sensor_process.hpp"
 #include "server/daemon/conversions.hpp"
 #include "server/daemon/event_log.hpp"
@@ -21,18 +20,18 @@ namespace {
 
 constexpr auto kHttpGrace = std::chrono::milliseconds(200);
 
-Status check_controller_frame(const RobotModel& model, const RobotConfig& robot) {
-  if (robot.controller_frame.empty() || model.find_link(robot.controller_frame)) return Done{};
-  std::vector<std::string> links;
-  for (const auto& link : model.links()) links.push_back(link.name);
-  return Error{RobotModelError::unknown_link, "robot.controller_frame '" + robot.controller_frame + "' (" +
-                                                  name_hint(robot.controller_frame, links) + ")"};
+/// Nothing where none is configured.
+Result<std::optional<ControllerFrame>> controller_frame(const RobotModel& model, const RobotConfig& robot) {
+  if (robot.controller_frame.empty()) return std::optional<ControllerFrame>();
+  auto frame = find_controller_frame(model, robot.controller_frame);
+  if (!frame) return Error{frame.error().code, "robot.controller_frame " + frame.error().detail};
+  return std::optional(*std::move(frame));
 }
 
 Result<RobotModel> load_model(const RobotConfig& robot) {
   auto model = RobotModel::load(robot.urdf, {robot.search_paths, robot.base_link});
   if (!model) return model;
-  if (auto status = check_controller_frame(*model, robot); !status) return status.error();
+  if (const auto frame = controller_frame(*model, robot); !frame) return frame.error();
   return model;
 }
 
@@ -86,10 +85,13 @@ struct Daemon::Parts {
     auto mapping = make_mapping(config, *model);
     if (!mapping) return mapping.error();
     if (auto status = check_motion(config, *model, *mapping); !status) return status;
-    cell =
-        std::make_unique<LiveCell>(cell_settings(config, version), *model, *virtual_cell, *std::move(mapping),
-                                   *store, core_estimator(*virtual_cell, drift_settings(config.drift)),
-                                   CellLog{log_calibration, log_pose, log_error, log_motion});
+    auto frame = controller_frame(*model, config.robot);
+    if (!frame) return frame.error();
+    auto settings = cell_settings(config, version);
+    settings.controller_frame = *std::move(frame);
+    cell = std::make_unique<LiveCell>(std::move(settings), *model, *virtual_cell, *std::move(mapping), *store,
+                                      core_estimator(*virtual_cell, drift_settings(config.drift)),
+                                      CellLog{log_calibration, log_pose, log_error, log_motion});
     for (const auto& [id, sensor] : config.sensors)
       if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
     return Done{};

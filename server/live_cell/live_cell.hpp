@@ -36,8 +36,8 @@ struct LiveCellSettings {
   std::string version;
   std::filesystem::path urdf;
   std::vector<std::filesystem::path> search_paths;
-  std::string base_link;  ///< as configured; empty: the URDF's root
-  std::string controller_frame;
+  std::string base_link;                            ///< as configured; empty: the URDF's root
+  std::optional<ControllerFrame> controller_frame;  ///< nothing: not configured
   Clock::duration joint_latency{0};  ///< from the joints' moment to the arrival of their message
   ViewGateSettings gate;             ///< but for the latency, which is each sensor's
   PoseWatchSettings watch;

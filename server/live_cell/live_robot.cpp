@@ -42,7 +42,7 @@ api::ControllerReport controller_report(const ControllerStatus& status, bool fre
 }  // namespace
 
 LiveRobot::LiveRobot(const RobotModel& model, JointMapping mapping, ViewGateSettings stillness,
-                     Clock::duration latency, std::string controller_frame)
+                     Clock::duration latency, std::optional<ControllerFrame> controller_frame)
     : model_(model),
       mapping_(std::move(mapping)),
       stillness_(stillness),
@@ -112,7 +112,7 @@ api::RobotReport LiveRobot::report() const {
   api::RobotReport report;
   report.model = model_.name();
   report.base_frame = model_.base_link();
-  report.controller_frame = controller_frame_;
+  if (controller_frame_) report.controller_frame = controller_frame_->link;
   report.joint_names = model_.position_names();
   {
     const std::lock_guard lock(mutex_);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/service/reports.hpp"
+#include "core/robot/controller_frame.hpp"
 #include "core/robot/joint_mapping.hpp"
 #include "core/robot/robot_model.hpp"
 #include "drivers/robot/joint_source.hpp"
@@ -23,7 +24,7 @@ class LiveRobot {
   /// `model` must outlive it. `stillness`: when the robot counts as still, and its joints as stale. `latency`
   /// is taken off the stamps of joints, which are those of their arrival.
   LiveRobot(const RobotModel& model, JointMapping mapping, ViewGateSettings stillness,
-            Clock::duration latency, std::string controller_frame);
+            Clock::duration latency, std::optional<ControllerFrame> controller_frame);
 
   /// What the link is to be given; the robot must outlive the link.
   RobotLinkEvents events();
@@ -39,6 +40,8 @@ class LiveRobot {
   }
 
   const RobotModel& model() const { return model_; }
+  /// Nothing where none is configured.
+  const std::optional<ControllerFrame>& controller_frame() const { return controller_frame_; }
   std::optional<JointState> newest_joints() const;
   /// What the controller is at when the model is at these positions; values of axes that move no joint are
   /// the newest. Errors: JointMappingError.
@@ -59,7 +62,7 @@ class LiveRobot {
   const JointMapping mapping_;
   const ViewGateSettings stillness_;
   const Clock::duration latency_;
-  const std::string controller_frame_;
+  const std::optional<ControllerFrame> controller_frame_;
 
   mutable std::mutex mutex_;  // guards what follows
   JointHistory history_;

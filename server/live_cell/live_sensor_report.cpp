@@ -30,6 +30,7 @@ api::PoseReport LiveSensor::pose() const {
   api::PoseReport report;
   report.sensor_id = settings_.id;
   report.base_frame = robot_.model().base_link();
+  report.controller_frame = robot_.controller_frame();
   report.sensor_frame = settings_.id + "_optical";
   report.state = watch_.state();
   report.valid = known_ && watch_.is_valid(now);
