@@ -29,6 +29,7 @@ constexpr std::array kTable{
     Row{ApiError::bad_idempotency_key, {400, "bad_idempotency_key", "The Idempotency-Key cannot be used.", "Send 1 to 128 printable ASCII characters."}},
     Row{ApiError::idempotency_conflict, {422, "idempotency_conflict", "This Idempotency-Key was used with another request.", "Use a new key for a new request."}},
     Row{ApiError::pose_not_valid, {409, "pose_not_valid", "There is no pose that may be used now.", "Look at state and last_known of the pose without ?format=; calibrate when it is uncalibrated or drifted."}},
+    Row{ApiError::no_controller_frame, {409, "no_controller_frame", "It is not configured which link the robot controller calls its base.", "Set robot.controller_frame to that link of the URDF (docs/pose_formats.md) and start again, or use a format that is given in the base frame."}},
     Row{ApiError::no_pose, {409, "no_pose", "The pose of this sensor is not known at all.", "Calibrate the sensor, or configure a guess for it."}},
     Row{ApiError::no_posture, {409, "no_posture", "No posture was found that the robot may take in the sensor's view.", "Lower table_height_m, or move the sensor so that it sees more of the robot's reach."}},
     Row{ApiError::calibrate_first, {409, "calibrate_first", "The last pose of this sensor is drifted or withheld: a posture chosen from it could help nothing.", "Calibrate the sensor, then ask again; an uncertain result is enough."}},

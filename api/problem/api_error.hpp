@@ -25,6 +25,7 @@ enum class ApiError {
   bad_idempotency_key,
   idempotency_conflict,
   pose_not_valid,
+  no_controller_frame,
   no_pose,
   no_posture,
   calibrate_first,

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <boost/json/object.hpp>
+#include <boost/json/serialize.hpp>
 #include <charconv>
+#include <functional>
 #include <sstream>
 
 #include "api/json/pose_json.hpp"
+#include "api/pose_formats/pose_format.hpp"
 #include "api/routes/names.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
@@ -17,40 +19,6 @@ namespace json = boost::json;
 
 constexpr double kLongestWait_ms = 60'000;
 
-using FormatWriter = void (*)(json::object&, const Pose&);
-
-struct Format {
-  const char* name;
-  FormatWriter write;
-};
-
-void write_matrix(json::object& body, const Pose& T_base_sensor) {
-  body["unit"] = "m";
-  body["layout"] = "4x4, row-major";
-  body["T_base_sensor"] = matrix_json(T_base_sensor);
-}
-
-void write_quaternion(json::object& body, const Pose& T_base_sensor) {
-  body["unit"] = "m";
-  body["layout"] = "quaternion x y z w";
-  body["translation_m"] = translation_json(T_base_sensor);
-  body["rotation_xyzw"] = rotation_xyzw_json(T_base_sensor);
-}
-
-constexpr std::array kFormats{Format{"matrix", write_matrix}, Format{"quaternion", write_quaternion}};
-
-const Format* find_format(const std::string& name) {
-  for (const auto& format : kFormats)
-    if (name == format.name) return &format;
-  return nullptr;
-}
-
-std::string format_names() {
-  std::string names;
-  for (const auto& format : kFormats) names += std::string(names.empty() ? "" : ", ") + format.name;
-  return names;
-}
-
 std::string seconds_text(Seconds age) {
   std::ostringstream text;
   text.setf(std::ios::fixed);
@@ -59,10 +27,18 @@ std::string seconds_text(Seconds age) {
   return text.str();
 }
 
+/// After a restart the same calibration may be given in another controller frame.
+std::string controller_mark(const ControllerFrame& frame) {
+  const auto told = frame.link + json::serialize(matrix_json(frame.T_base_controller));
+  return std::string(".").append(std::to_string(std::hash<std::string>{}(told)));
+}
+
 /// Equal while a client would do the same with the pose; ages are headers for that reason.
-std::string etag(const PoseReport& pose) {
+std::string etag(const PoseReport& pose, const PoseFormat* format) {
+  const bool is_controllers = format && format->reference == Reference::controller && pose.controller_frame;
   return "W/\"" + (pose.known ? pose.known->calibration_id : std::string("none")) + "." +
-         name_of(pose.state) + (pose.valid ? ".valid\"" : ".invalid\"");
+         name_of(pose.state) + (pose.valid ? ".valid" : ".invalid") +
+         (is_controllers ? controller_mark(*pose.controller_frame) : std::string()) + "\"";
 }
 
 bool etag_matches(const std::string& if_none_match, const std::string& tag) {
@@ -125,15 +101,32 @@ json::object full_body(const PoseReport& pose) {
   return body;
 }
 
-Response format_response(const PoseReport& pose, const Format& format) {
-  if (!pose.valid || !pose.known)
-    return problem(ApiError::pose_not_valid,
-                   "state is " + std::string(name_of(pose.state)) + ": " + pose.reason);
-  auto body = heading_json(pose);
-  body["calibration"] = pose.known->calibration_id;
-  body["format"] = format.name;
-  format.write(body, *pose.known->result.T_base_sensor);
-  return json_response(200, body);
+Response not_valid(const PoseReport& pose) {
+  return problem(ApiError::pose_not_valid,
+                 "state is " + std::string(name_of(pose.state)) + ": " + pose.reason);
+}
+
+json::object format_body(const PoseReport& pose, const PoseFormat& format, const FramedPose& given) {
+  json::object body{{"sensor", pose.sensor_id},
+                    {"valid", pose.valid},
+                    {"state", name_of(pose.state)},
+                    {"calibration", pose.known->calibration_id},
+                    {"sigma_position_m", pose.known->result.sigma_position_m},
+                    {"sigma_rotation_rad", pose.known->result.sigma_rotation_rad}};
+  for (auto& member : pose_members(format, given)) body[member.key()] = std::move(member.value());
+  return body;
+}
+
+/// Error: no_controller_frame.
+Result<Response> first_response(const PoseReport& pose, const PoseFormat* format) {
+  if (!format) return json_response(200, full_body(pose));
+  if (!pose.valid || !pose.known) return not_valid(pose);
+  const auto given = refer({*pose.known->result.T_base_sensor, pose.base_frame, pose.sensor_frame},
+                           format->reference, pose.controller_frame);
+  if (!given)
+    return fail(ApiError::no_controller_frame,
+                std::string(format->name) + " is given in the frame of the robot controller");
+  return json_response(200, format_body(pose, *format, *given));
 }
 
 /// ?wait=30s or 500ms, at most a minute.
@@ -150,10 +143,12 @@ Result<std::chrono::milliseconds> read_wait(const Request& request) {
   return std::chrono::milliseconds(static_cast<int>(ms));
 }
 
-Response respond(const Request& request, const PoseReport& pose, const Format* format,
+Response respond(const Request& request, const PoseReport& pose, const PoseFormat* format,
                  std::chrono::milliseconds wait) {
-  auto response = format ? format_response(pose, *format) : json_response(200, full_body(pose));
-  const auto tag = etag(pose);
+  auto first = first_response(pose, format);
+  if (!first) return problem(first.error());  // however long one waits
+  auto response = *std::move(first);
+  const auto tag = etag(pose, format);
   const bool unchanged = etag_matches(request.header("if-none-match"), tag);
   if (response.status == 200 && unchanged) response = {304, {}, {}, {}};
   if (unchanged) response.worth_waiting = wait;
@@ -165,9 +160,9 @@ Response respond(const Request& request, const PoseReport& pose, const Format* f
 Response answer_pose(const Request& request, const PathValues& values, CellService& service) {
   if (auto unknown = unknown_query(request, {"format", "wait"})) return problem(*unknown);
   const auto asked = request.query.find("format");
-  const auto* format = asked == request.query.end() ? nullptr : find_format(asked->second);
+  const auto* format = asked == request.query.end() ? nullptr : find_pose_format(asked->second);
   if (asked != request.query.end() && !format)
-    return problem(ApiError::unknown_format, asked->second + " is not one of " + format_names());
+    return problem(ApiError::unknown_format, asked->second + " is not one of " + pose_format_names());
   const auto wait = read_wait(request);
   if (!wait) return problem(wait.error());
   const auto pose = service.pose(values[0]);

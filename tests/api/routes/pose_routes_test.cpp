@@ -42,23 +42,13 @@ TEST_F(PoseRoutes, UncalibratedHasNothingLastKnown) {
   EXPECT_TRUE(body().at("last_known").is_null());
 }
 
-TEST_F(PoseRoutes, EveryFormatOfAPoseThatIsNotValidIsAConflict) {
-  cell_.make_calibrated();
-  cell_.pose_report.valid = false;
-  for (const auto* format : {"matrix", "quaternion"}) {
-    EXPECT_EQ(get(std::string(kPose) + "?format=" + format).status, 409);
-    EXPECT_EQ(code(), "pose_not_valid");
-    EXPECT_FALSE(body().contains("T_base_sensor"));
-  }
-}
-
 TEST_F(PoseRoutes, FormatsAreLabelled) {
   cell_.make_calibrated();
   EXPECT_EQ(get(std::string(kPose) + "?format=quaternion").status, 200);
-  EXPECT_EQ(body().at("layout"), "quaternion x y z w");
+  EXPECT_EQ(body().at("order"), "translation x y z, quaternion x y z w");
   EXPECT_DOUBLE_EQ(body().at("rotation_xyzw").at(3).to_number<double>(), 1);
   EXPECT_EQ(get(std::string(kPose) + "?format=matrix").status, 200);
-  EXPECT_EQ(body().at("layout"), "4x4, row-major");
+  EXPECT_EQ(body().at("order"), "4x4, row-major");
 }
 
 TEST_F(PoseRoutes, UnknownFormatAndParameterNameWhatThereIs) {
