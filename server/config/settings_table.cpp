@@ -28,7 +28,8 @@ void declare_robot(std::vector<Setting>& table) {
   key("base_link", &RobotConfig::base_link, text(), "",
       "Link whose frame is the base of every published pose. Empty: the URDF's root.");
   key("controller_frame", &RobotConfig::controller_frame, text(), "",
-      "Link whose frame the controller calls its base; needed for vendors' pose formats.");
+      "Link whose frame the controller calls its base, still to base_link; needed for the pose formats of "
+      "controllers: docs/pose_formats.md.");
   key("driver", &RobotConfig::driver, one_of(robot_driver_names()), "",
       "How joints are read from the controller: docs/controllers.md names the makes.");
   key("host", &RobotConfig::host, text(), "", "Name or address of the robot controller.").required = true;

@@ -114,6 +114,11 @@ class BadInput(CellTest):
     def test_an_unknown_base_link(self):
         self.expect_refused(self.run_daemon("robot.base_link=bass_link"), "bass_link")
 
+    def test_a_controller_frame_that_is_no_link_or_moves(self):
+        self.expect_refused(self.run_daemon("robot.controller_frame=bass"), "robot.controller_frame", "bass", "'base'")
+        self.expect_refused(self.run_daemon("robot.controller_frame=forearm"), "robot.controller_frame", "forearm", "joint",
+                            "stands still")
+
     def test_a_storage_folder_that_cannot_be_made(self):
         self.expect_refused(self.run_daemon("storage.path=/proc/none/calibrd.db"), "/proc/none")
 

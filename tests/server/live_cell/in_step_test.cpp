@@ -162,7 +162,7 @@ class OffsetWatchTest : public ::testing::Test {
                                        test::test_arm().position_names()),
                    {},
                    Clock::duration(0),
-                   ""};
+                   {}};
   RobotLinkEvents events_ = robot_.events();
   OffsetWatch watch_{
       std::make_unique<TimeOffsetEstimator>(VirtualCell(test::test_arm()), test::ideal_kinect2()),

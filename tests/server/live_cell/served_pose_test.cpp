@@ -23,6 +23,17 @@ TEST_F(ServedPose, StoredPoseIsUnverifiedAfterARestartUntilACheckAgrees) {
   EXPECT_EQ(pose().state, PoseState::calibrated);
 }
 
+TEST_F(ServedPose, PoseAndRobotNameTheControllerFrame) {
+  EXPECT_FALSE(pose().controller_frame);
+  EXPECT_EQ(cell_->robot().controller_frame, "");
+  settings_.controller_frame = ControllerFrame{"pedestal", Pose(Eigen::Translation3d(0, 0, 0.31))};
+  start();
+  ASSERT_TRUE(pose().controller_frame);
+  EXPECT_EQ(pose().controller_frame->link, "pedestal");
+  EXPECT_EQ(pose().controller_frame->T_base_controller.translation().z(), 0.31);
+  EXPECT_EQ(cell_->robot().controller_frame, "pedestal");
+}
+
 TEST_F(ServedPose, PoseThatNoLongerFitsIsDrifted) {
   calibrate();
   agrees_ = false;
