@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "api/pose_formats/pose_format.hpp"
 #include "api/problem/api_error.hpp"
 
 namespace calibrd::api {
@@ -17,6 +18,24 @@ TEST(Documentation, NamesEveryErrorCode) {
   for (int error = 1; error <= static_cast<int>(ApiError::internal); ++error) {
     const std::string code = problem_entry(static_cast<ApiError>(error)).code;
     EXPECT_NE(page.str().find("`" + code + "`"), std::string::npos) << code;
+  }
+}
+
+TEST(Documentation, NamesEveryPoseFormatWithItsUnits) {
+  std::stringstream page;
+  page << std::ifstream(CALIBRD_SOURCE_DIR "/docs/pose_formats.md").rdbuf();
+  std::stringstream api;
+  api << std::ifstream(CALIBRD_SOURCE_DIR "/docs/api.md").rdbuf();
+  for (const auto& format : pose_formats()) {
+    const auto name = "`" + std::string(format.name) + "`";
+    EXPECT_NE(api.str().find(name), std::string::npos) << name;
+    std::string frame = "base";
+    if (format.reference == Reference::controller) frame = "controller";
+    if (format.reference == Reference::inverse) frame = "**inverse**";
+    std::string units = format.length_unit;
+    if (format.angle_unit) units += std::string(", ") + format.angle_unit;
+    const auto row = "| " + name + " | " + frame + " | " + units + " |";
+    EXPECT_NE(page.str().find(row), std::string::npos) << row;
   }
 }
 
