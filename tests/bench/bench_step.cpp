@@ -30,7 +30,7 @@ int run_step(const StepOptions& options) {
   if (!model) return stop(model.error().message());
   auto mapping = JointMapping::make(joints_in_wire_order(model->position_names()), model->position_names());
   if (!mapping) return stop(mapping.error().message());
-  LiveRobot robot(*model, *std::move(mapping), {}, Clock::duration(0), "");
+  LiveRobot robot(*model, *std::move(mapping), {}, Clock::duration(0), {});
   VirtualCell cell(*model);
   std::vector<double> known_ms, placed_ms;
   auto events = robot.events();
