@@ -11,6 +11,7 @@ namespace {
 /// One controller cycle: also with no settle time the robot must not move across the exposure.
 constexpr auto kShortestWindow = std::chrono::milliseconds(25);
 constexpr double kOffsetSigmas = 3;
+constexpr double kJitterSigmas = 4;  // of the largest of some intervals
 
 bool stood_still(const JointHistory& joints, const ViewGateSettings& settings, Clock::time_point begin,
                  Clock::time_point end) {
@@ -105,6 +106,7 @@ const char* reason_of(FrameVerdict verdict) {
 FrameVerdict ViewGate::enter(std::uint64_t sequence, Clock::time_point stamp, const DepthImage* depth) {
   if (sequence_ && (sequence == *sequence_ || stamp == stamp_)) return FrameVerdict::repeated;
   if (sequence_ && (sequence < *sequence_ || stamp < stamp_)) return FrameVerdict::out_of_order;
+  cadence_.add(sequence, stamp);
   sequence_ = sequence;
   stamp_ = stamp;
   if (!depth) return FrameVerdict::usable;
@@ -126,7 +128,7 @@ FrameDecision ViewGate::judge(const JointHistory& joints, Clock::time_point stam
   else if (bracket->after->stamp - bracket->before->stamp > settings_.stale_after)
     decision.verdict = FrameVerdict::joints_stale;
   else
-    decision.verdict = judge_motion(joints, decision, now);
+    decision.verdict = judge_motion(joints, decision, cadence_.delay_s(stamp), now);
   return decision;
 }
 
@@ -143,19 +145,23 @@ FrameVerdict ViewGate::judge_stillness(const JointHistory& joints, Clock::time_p
 }
 
 /// With the joints of the frame's time at hand.
-FrameVerdict ViewGate::judge_motion(const JointHistory& joints, FrameDecision& decision,
+FrameVerdict ViewGate::judge_motion(const JointHistory& joints, FrameDecision& decision, double frame_delay_s,
                                     Clock::time_point now) const {
   if (is_doubtful(joints, decision.exposed)) return FrameVerdict::moving;
   decision.positions_rad = joints.positions_at(decision.exposed);
   const auto stillness = judge_stillness(joints, decision.exposed, now);
   if (stillness == FrameVerdict::usable) decision.timing_error_m = 0;
   if (stillness != FrameVerdict::moving) return stillness;
-  if (reach_ && late_error_m(joints, *reach_, decision.exposed) > settings_.largest_late_error_m) {
+  // What single frames jitter by is in the offset's sigma already.
+  if (offset_ && frame_delay_s < kJitterSigmas * offset_->sigma_s) frame_delay_s = 0;
+  if (reach_ &&
+      late_error_m(joints, *reach_, decision.exposed, frame_delay_s) > settings_.largest_late_error_m) {
     decision.positions_rad.reset();  // old joints under a new stamp
     return FrameVerdict::moving;
   }
   if (offset_ && reach_)
-    decision.timing_error_m = calibrd::timing_error_m(joints, *reach_, decision.exposed, offset_->sigma_s);
+    decision.timing_error_m =
+        calibrd::timing_error_m(joints, *reach_, decision.exposed, offset_->sigma_s, frame_delay_s);
   const bool known = decision.timing_error_m && *decision.timing_error_m <= settings_.largest_timing_error_m;
   return known && settings_.timed_views ? FrameVerdict::timed : FrameVerdict::moving;
 }

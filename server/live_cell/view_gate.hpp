@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/sensing/images.hpp"
+#include "server/live_cell/frame_cadence.hpp"
 #include "server/live_cell/joint_history.hpp"
 #include "server/live_cell/view_timing.hpp"
 
@@ -86,13 +87,15 @@ class ViewGate {
  private:
   FrameVerdict without_joints_around(const JointHistory& joints, Clock::time_point exposed,
                                      Clock::time_point now) const;
-  FrameVerdict judge_motion(const JointHistory& joints, FrameDecision& decision, Clock::time_point now) const;
+  FrameVerdict judge_motion(const JointHistory& joints, FrameDecision& decision, double frame_delay_s,
+                            Clock::time_point now) const;
   FrameVerdict judge_stillness(const JointHistory& joints, Clock::time_point exposed,
                                Clock::time_point now) const;
 
   ViewGateSettings settings_;
   std::shared_ptr<const LinkReach> reach_;
   std::optional<AppliedOffset> offset_;
+  FrameCadence cadence_;
   std::optional<std::uint64_t> sequence_;
   std::optional<std::uint64_t> pixels_;  // fingerprint of the frame before
   Clock::time_point stamp_;

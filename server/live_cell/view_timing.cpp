@@ -41,7 +41,7 @@ double delay_around_s(const std::deque<JointState>& states, std::deque<JointStat
 }  // namespace
 
 std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach& reach,
-                                     Clock::time_point exposed, double sigma_s) {
+                                     Clock::time_point exposed, double sigma_s, double frame_delay_s) {
   const auto& states = joints.states();
   const auto after = std::ranges::lower_bound(states, exposed, {}, &JointState::stamp);
   if (after == states.begin() || after == states.end()) return std::nullopt;
@@ -52,15 +52,16 @@ std::optional<double> timing_error_m(const JointHistory& joints, const LinkReach
   if (has_earlier) bend = acceleration(reach, *std::prev(before), *before, *after);
   if (has_later) bend = std::max(bend, acceleration(reach, *before, *after, *std::next(after)));
   const double cycle_s = seconds_between(*before, *after);
-  return speed_between(reach, *before, *after) * (sigma_s + delay_around_s(states, after)) +
+  return speed_between(reach, *before, *after) * (sigma_s + delay_around_s(states, after) + frame_delay_s) +
          bend * cycle_s * cycle_s / 8;
 }
 
-double late_error_m(const JointHistory& joints, const LinkReach& reach, Clock::time_point exposed) {
+double late_error_m(const JointHistory& joints, const LinkReach& reach, Clock::time_point exposed,
+                    double frame_delay_s) {
   const auto& states = joints.states();
   const auto after = std::ranges::lower_bound(states, exposed, {}, &JointState::stamp);
   if (after == states.begin() || after == states.end()) return 0;
-  return speed_between(reach, *std::prev(after), *after) * delay_around_s(states, after);
+  return speed_between(reach, *std::prev(after), *after) * (delay_around_s(states, after) + frame_delay_s);
 }
 
 }  // namespace calibrd

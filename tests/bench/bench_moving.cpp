@@ -56,7 +56,7 @@ std::vector<View> moving_views(MovingScene& moving, const Scene& scene, double o
     const JointHistory joints = moving.joints(t - 0.5, t + 0.5);
     const auto exposed = MovingScene::clock_at(views.back().stamp_s - offset_s);
     views.back().joint_positions_rad = joints.positions_at(exposed).value_or(moving.reported_joints(t));
-    largest_m = std::max(largest_m, timing_error_m(joints, reach, exposed, sigma_s).value_or(1));
+    largest_m = std::max(largest_m, timing_error_m(joints, reach, exposed, sigma_s, 0).value_or(1));
   }
   return views;
 }

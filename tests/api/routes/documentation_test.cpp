@@ -27,7 +27,7 @@ TEST(Documentation, NamesEveryPoseFormatWithItsUnits) {
   std::stringstream api;
   api << std::ifstream(CALIBRD_SOURCE_DIR "/docs/api.md").rdbuf();
   for (const auto& format : pose_formats()) {
-    const auto name = "`" + std::string(format.name) + "`";
+    const auto name = std::string("`").append(format.name).append("`");
     EXPECT_NE(api.str().find(name), std::string::npos) << name;
     std::string frame = "base";
     if (format.reference == Reference::controller) frame = "controller";

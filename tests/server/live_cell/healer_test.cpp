@@ -98,7 +98,7 @@ TEST_F(Healing, SensorThatIsKnockedAgainAndAgainIsNotCalibratedWithoutEnd) {
   for (int knock = 1; knock <= 4; ++knock) {
     set_state(api::PoseState::drifted);
     ASSERT_TRUE(wait_for(static_cast<std::size_t>(knock)));
-    end("c" + std::to_string(knock), api::JobStatus::succeeded);
+    end(std::string("c").append(std::to_string(knock)), api::JobStatus::succeeded);
     set_state(api::PoseState::calibrated);
   }
   set_state(api::PoseState::drifted);

@@ -217,6 +217,21 @@ TEST(ViewGate, AMovingRobotsFrameIsNoViewWhereAMessageCameLate) {
   EXPECT_GT(*judge_timed(turning(0.2, 0, 8ms), 0.0005).timing_error_m, 0.2 * 0.3 * 0.008);
 }
 
+TEST(ViewGate, AMovingRobotsFrameIsNoViewWhereItCameLateItself) {
+  for (const auto late : {0ms, 8ms, 120ms}) {
+    ViewGateSettings settings;
+    settings.timed_views = true;
+    ViewGate gate(settings, std::make_shared<const LinkReach>(test::test_arm()));
+    gate.set_offset(AppliedOffset{20ms, 0.0005});
+    for (int frame = 0; frame < 10; ++frame)
+      if (frame != 6)
+        gate.enter(static_cast<std::uint64_t>(frame), at(33ms * frame + (frame == 9 ? late : 0ms)));
+    const auto decision = gate.judge(turning(0.2), at(500ms));
+    EXPECT_EQ(decision.verdict, late == 0ms ? FrameVerdict::timed : FrameVerdict::moving) << late.count();
+    EXPECT_EQ(decision.positions_rad.has_value(), late < 120ms);
+  }
+}
+
 TEST(ViewGate, AMessageThatCameLateSomeBeforeCountsToo) {
   JointHistory history;
   for (auto t = 0ms; t <= 1000ms; t += 25ms) {
