@@ -7,6 +7,7 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -139,7 +140,29 @@ asio::awaitable<bool> Session::answer(Parser& parser) {
     context_.log({request->method, request->path, response.status,
                   std::chrono::duration_cast<std::chrono::microseconds>(duration)});
   }
-  co_return co_await write(std::move(response), head, keep_alive);
+  if (!response.stream) co_return co_await write(std::move(response), head, keep_alive);
+  co_await write_stream(std::move(response), head);
+  co_return false;
+}
+
+/// Its end is that of the connection.
+asio::awaitable<void> Session::write_stream(Response response, bool head) {
+  auto message = heading<http::empty_body>(response, false);
+  stream_.expires_after(context_.settings.write_timeout);
+  beast::error_code failure;
+  co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
+  asio::steady_timer pause(stream_.get_executor());
+  while (!failure && !head && !context_.stopping) {
+    const std::string text = response.stream->next();
+    if (!text.empty()) {
+      stream_.expires_after(context_.settings.write_timeout);
+      co_await asio::async_write(stream_, asio::buffer(text),
+                                 asio::redirect_error(asio::use_awaitable, failure));
+      continue;
+    }
+    pause.expires_after(kAskAgainAfter);
+    co_await pause.async_wait(asio::use_awaitable);
+  }
 }
 
 asio::awaitable<Response> Session::dispatch(const Request& request) {

@@ -44,6 +44,7 @@ class Session {
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
+  boost::asio::awaitable<void> write_stream(Response response, bool head);
   boost::asio::awaitable<void> refuse_unreadable(boost::beast::error_code why);
 
   boost::beast::tcp_stream stream_;

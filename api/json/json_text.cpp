@@ -19,6 +19,7 @@ bool is_scalar(const json::value& value) { return !value.is_array() && !value.is
 
 class Writer {
  public:
+  explicit Writer(bool on_one_line) : on_one_line_(on_one_line) {}
   std::string take() { return std::move(text_); }
 
   void write(const json::value& value) {
@@ -79,18 +80,22 @@ class Writer {
     indent_ += 2;
   }
   void next(bool& first) {
-    if (!first) text_ += ',';
+    if (!first) text_ += on_one_line_ ? ", " : ",";
     first = false;
-    text_ += '\n';
-    text_.append(indent_, ' ');
+    begin_line();
   }
   void close(char bracket) {
     indent_ -= 2;
-    text_ += '\n';
-    text_.append(indent_, ' ');
+    begin_line();
     text_ += bracket;
   }
+  void begin_line() {
+    if (on_one_line_) return;
+    text_ += '\n';
+    text_.append(indent_, ' ');
+  }
 
+  const bool on_one_line_;
   std::string text_;
   std::size_t indent_ = 0;
 };
@@ -98,9 +103,15 @@ class Writer {
 }  // namespace
 
 std::string json_text(const json::value& value) {
-  Writer writer;
+  Writer writer(false);
   writer.write(value);
   return writer.take() + "\n";
+}
+
+std::string json_line(const json::value& value) {
+  Writer writer(true);
+  writer.write(value);
+  return writer.take();
 }
 
 }  // namespace calibrd::api

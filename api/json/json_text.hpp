@@ -10,4 +10,7 @@ namespace calibrd::api {
 /// back the same (0.1, not 1E-1). Infinities and NaN, which JSON does not have, become null.
 std::string json_text(const boost::json::value& value);
 
+/// The same on one line, without the end of line.
+std::string json_line(const boost::json::value& value);
+
 }  // namespace calibrd::api

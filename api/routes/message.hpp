@@ -3,6 +3,7 @@
 #pragma once
 #include <chrono>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,14 @@ struct Request {
   }
 };
 
+/// A body without an end, written bit by bit. One thread at a time.
+class BodyStream {
+ public:
+  virtual ~BodyStream() = default;
+  /// What is to be written now; empty: nothing yet, ask again soon.
+  virtual std::string next() = 0;
+};
+
 struct Response {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< Content-Type included
@@ -34,6 +43,7 @@ struct Response {
   /// The client would rather wait for another answer than have this one: ask again until there is one, for at
   /// most this long.
   std::chrono::milliseconds worth_waiting{0};
+  std::shared_ptr<BodyStream> stream = nullptr;  ///< instead of `body`, until the client or the daemon ends
 };
 
 /// Splits "/path?a=1&b" and decodes it; nothing when it cannot be decoded.

@@ -4,7 +4,7 @@
 
 namespace calibrd::api {
 
-Router make_routes(CellService& service) {
+Router make_routes(CellService& service, const EventHub& events) {
   Router router;
   add_health_routes(router, service);
   add_pose_routes(router, service);
@@ -17,6 +17,7 @@ Router make_routes(CellService& service) {
   add_motion_routes(router, service);
   add_several_sensors_routes(router, service);
   add_obstacle_routes(router, service);
+  add_event_routes(router, events);
   return router;
 }
 

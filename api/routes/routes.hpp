@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "api/events/event_hub.hpp"
 #include "api/routes/router.hpp"
 #include "api/service/cell_service.hpp"
 
 namespace calibrd::api {
 
-/// Every route of the HTTP interface (docs/api.md) over `service`, which must outlive the router.
-Router make_routes(CellService& service);
+/// Every route of the HTTP interface (docs/api.md) over `service` and `events`, which must outlive the router.
+Router make_routes(CellService& service, const EventHub& events);
 
 // The parts it is made of.
 void add_pose_routes(Router& router, CellService& service);
@@ -21,5 +22,6 @@ void add_next_posture_routes(Router& router, CellService& service);
 void add_motion_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);
 void add_health_routes(Router& router, CellService& service);
+void add_event_routes(Router& router, const EventHub& events);
 
 }  // namespace calibrd::api

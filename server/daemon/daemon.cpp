@@ -10,6 +10,7 @@
 #include "drivers/sensor/sensor_process.hpp"
 #include "server/daemon/conversions.hpp"
 #include "server/daemon/event_log.hpp"
+#include "server/daemon/feed_thread.hpp"
 #include "server/daemon/motion_link.hpp"
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
@@ -70,6 +71,7 @@ struct Daemon::Parts {
   std::unique_ptr<MotionLink> motion;  // only where the robot may be moved
   std::unique_ptr<LiveCell> cell;
   std::unique_ptr<RobotLink> link;
+  std::unique_ptr<FeedThread> feed;
   api::Router router;
   std::unique_ptr<api::HttpServer> http;
 
@@ -113,7 +115,8 @@ struct Daemon::Parts {
   }
 
   Status make_http(const Config& config) {
-    router = api::make_routes(*cell);
+    feed = std::make_unique<FeedThread>(*cell);
+    router = api::make_routes(*cell, feed->hub());
     auto server = api::HttpServer::start(http_settings(config), router, log_access);
     if (!server) return server.error();
     http = *std::move(server);
@@ -155,6 +158,7 @@ void Daemon::stop() {
   if (parts_->http) parts_->http->stop(kHttpGrace);
   if (parts_->link) parts_->link->stop();
   parts_->http.reset();
+  parts_->feed.reset();
   parts_->cell.reset();
 }
 

@@ -7,10 +7,12 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
+#include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <future>
+#include <thread>
 
 #include "api/http/http_server_error.hpp"
 #include "api/routes/responses.hpp"
@@ -44,6 +46,12 @@ class Client {
     send("GET " + target + " HTTP/1.1\r\nHost: x\r\n\r\n");
     return receive();
   }
+  /// Of a body without an end, up to and with `end`.
+  std::string receive_until(const std::string& end) {
+    std::string text;
+    asio::read_until(socket_, asio::dynamic_buffer(text), end);
+    return text;
+  }
   bool is_closed() {
     char byte = 0;
     boost::system::error_code failure;
@@ -68,7 +76,8 @@ class HttpServerTest : public ::testing::Test {
   }
 
   FakeCell cell_;
-  Router router_ = make_routes(cell_);
+  EventHub events_{"run"};
+  Router router_ = make_routes(cell_, events_);
   std::vector<AccessRecord> log_;
   std::unique_ptr<HttpServer> server_;
 };
@@ -111,6 +120,39 @@ TEST_F(HttpServerTest, SameEtagIs304WithoutBody) {
   client.send("GET /api/v1/sensors/kinect2/pose HTTP/1.1\r\nIf-None-Match: " + tag + "\r\n\r\n");
   EXPECT_EQ(client.receive().result_int(), 304U);
   EXPECT_EQ(client.get("/livez").result_int(), 200U);
+}
+
+TEST_F(HttpServerTest, EventsComeAsTheyHappenUntilTheServerEnds) {
+  start();
+  events_.publish("pose/a", "pose", "{1}");
+  Client client(server_->port());
+  client.send("GET /api/v1/events HTTP/1.1\r\n\r\n");
+  EXPECT_NE(client.receive_until("{1}\n\n").find("text/event-stream"), std::string::npos);
+  events_.publish("pose/a", "pose", "{2}");
+  EXPECT_EQ(client.receive_until("{2}\n\n"), "id: run-2\nevent: pose\ndata: {2}\n\n");
+  const auto begin = std::chrono::steady_clock::now();
+  server_->stop(5s);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+  EXPECT_TRUE(client.is_closed());
+}
+
+TEST_F(HttpServerTest, AListenerThatGoesAwayGivesItsPlaceBack) {
+  HttpServerSettings settings;
+  settings.max_connections = 1;
+  start(settings);
+  {
+    Client listener(server_->port());
+    listener.send("GET /api/v1/events HTTP/1.1\r\n\r\n");
+    listener.receive_until("retry");
+    EXPECT_EQ(Client(server_->port()).get("/livez").result_int(), 503U);
+  }
+  for (int i = 0; i < 100; ++i) {  // what is written to a closed connection fails
+    events_.publish("pose/a", "pose", std::to_string(i));
+    Client client(server_->port());
+    if (client.get("/livez").result_int() == 200U) return;
+    std::this_thread::sleep_for(20ms);
+  }
+  FAIL() << "its place is still taken";
 }
 
 TEST_F(HttpServerTest, WaitEndsWhenThePoseChangesOrTheTimeIsUp) {

@@ -36,9 +36,10 @@ class RouteTest : public ::testing::Test {
   }
 
   FakeCell cell_;
+  EventHub events_{"run"};
 
  private:
-  Router router_ = make_routes(cell_);
+  Router router_ = make_routes(cell_, events_);
   Response last_;
 };
 
