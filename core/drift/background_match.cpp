@@ -39,14 +39,15 @@ constexpr double kSpuriousSafety = 3;
 /// Share of a frame's covariance that no other frame averages out: bumps that were no planes, a part that
 /// hangs before them. Where the background shows a direction well it is next to nothing.
 constexpr double kUnmodelledShare = 0.2;
-/// A shift of less squares than this, tolerance and noise taken off, needs no support.
-constexpr double kNoShift = 1;
+/// A shift of less squares than this, noise and tolerance taken off, is none that the test would count, and
+/// needs no support: two standard deviations.
+constexpr double kNoShift = 4;
 
 using Sums = BackgroundMatrix;
 using Slope = Eigen::Matrix<float, kBackgroundParameters + 1, 1>;
 using Products = Eigen::Matrix<float, kBackgroundParameters + 1, kBackgroundParameters + 1>;
 
-int tiles_per_row(const CameraModel& grid) { return (grid.width - 1) / kTileSide + 1; }
+int tile_side(const CameraModel& grid) { return (grid.width - 1) / kTilesPerRow + 1; }
 
 BackgroundVector vague_information() {
   BackgroundVector information = BackgroundVector::Constant(1 / (kVague * kVague));
@@ -94,7 +95,8 @@ void BackgroundMatcher::refresh() {
       Row row{cell,
               static_cast<std::uint32_t>(y / kClusterSide) * per_row +
                   static_cast<std::uint32_t>(x / kClusterSide),
-              static_cast<std::uint32_t>(y / kTileSide * tiles_per_row(grid) + x / kTileSide), known.sigma_m};
+              static_cast<std::uint32_t>(y / tile_side(grid) * kTilesPerRow + x / tile_side(grid)),
+              known.sigma_m};
       row.slope.head<3>() = -z * z * d.cross(m);
       row.slope.segment<3>(3) = -z * m;
       row.slope[6] = 1;
@@ -103,7 +105,7 @@ void BackgroundMatcher::refresh() {
     }
   }
   std::ranges::stable_sort(rows_, {}, &Row::tile);
-  tiles_ = static_cast<std::size_t>(tiles_per_row(grid) * ((grid.height - 1) / kTileSide + 1));
+  tiles_ = static_cast<std::size_t>(kTilesPerRow * ((grid.height - 1) / tile_side(grid) + 1));
   clusters_ =
       static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
 }
@@ -228,12 +230,14 @@ void BackgroundMatcher::find_support(const Fit& fit, const Matrix6d& turn,
       kNoShift)
     return;
   const BackgroundVector vague = vague_information();
-  const auto least =
-      least_shift_without_a_window({fit.tiles, tiles_per_row(map_.grid()), fit.at, vague, fit.worth}, move);
+  const auto least = least_shift_without_a_window({fit.tiles, fit.at, vague, fit.worth}, move);
   if (!least) return;
   const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
   const Sums left = without(fit.worth * seen * spurious_, fit.worth * (fit.information - least->left_out),
                             vague.asDiagonal());
+  const int side = tile_side(map_.grid());
+  const auto x = static_cast<int>(least->column) * side, y = static_cast<int>(least->row) * side;
+  observation.unsupported = CellWindow{x, y, static_cast<int>(kWindowTiles) * side};
   observation.supported_shift = turn * least->solution.head<6>();
   observation.supported_covariance = turn * left.topLeftCorner<6, 6>() * turn.transpose();
 }

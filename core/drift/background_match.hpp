@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,14 @@ enum class CellState : std::uint8_t {
   farther  ///< what was here is gone
 };
 
+/// A square part of the cells: its first column and row, and its side.
+struct CellWindow {
+  int x = 0, y = 0, side = 0;
+  bool holds(int column, int row) const {
+    return column >= x && column < x + side && row >= y && row < y + side;
+  }
+};
+
 /// One frame against the remembered background.
 struct BackgroundObservation {
   bool has_evidence = false;  ///< enough of the background is where a sensor about here would see it
@@ -31,6 +40,8 @@ struct BackgroundObservation {
   /// least_shift_without_a_window().
   Vector6d supported_shift = Vector6d::Zero();
   Matrix6d supported_covariance = Matrix6d::Zero();
+  /// The part that is left out: where the frame, taken whole, shows a shift beyond the tolerance.
+  std::optional<CellWindow> unsupported;
   double offset_change_m = 0;  ///< of the range, since then
   double offset_sigma_m = 0;
   /// Of that what can be relied on: before a single wall an offset looks like a shift.

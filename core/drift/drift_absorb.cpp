@@ -59,6 +59,22 @@ void DriftWatch::absorb(double now_s) {
   absorbed_s_ = now_s;
   if (moved_ || is_doubtful() || !is_known_to_stand()) return;
   take(scene_.unchanged_for(settings_.absorb_s));
+  absorb_what_was_pushed(now_s);
+}
+
+/// Pushed by less than makes it another surface. The robot has said meanwhile that the sensor has not slid.
+void DriftWatch::absorb_what_was_pushed(double now_s) {
+  if (disputed_since_s_ < 0 || now_s - disputed_since_s_ < settings_.absorb_s) return;
+  if (!robot_word_.agrees_since(disputed_since_s_, now_s)) return;
+  std::vector<std::uint8_t> chosen(matcher_.states().size());
+  const int width = map_.grid().width;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+    const bool is_seen = matcher_.states()[i] == CellState::same;
+    chosen[i] = is_seen && disputed_.holds(x, y) && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
+  }
+  take(chosen);
+  disputed_since_s_ = -1;
 }
 
 /// A table with all that stands on it: what the robot denied to be the sensor's move is the background now.

@@ -67,7 +67,7 @@ void DriftWatch::start_over() {
   robot_word_.reset();
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
   quiet_frames_ = 0;
-  lost_since_s_ = offset_over_s_ = learnt_s_ = -1;
+  lost_since_s_ = offset_over_s_ = learnt_s_ = disputed_since_s_ = -1;
   evidence_s_ = pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   absorbed_s_ = frame_s_;
@@ -120,18 +120,35 @@ void DriftWatch::test(const BackgroundObservation& observation) {
                  move * observation.supported_shift,
                  move * observation.supported_covariance * move.transpose(), observation.common_share};
   test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
-  // What the test tolerates, because all frames have it in common, is not known either.
-  const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
-  if (tolerated * worst_sigma(innovation_->covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
-      tolerated * worst_sigma(innovation_->covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m)
-    pinned_s_ = frame_s_;
+  const bool is_pinned = pins(innovation_->supported_covariance);
+  if (is_pinned) pinned_s_ = frame_s_;
+  follow_dispute(observation, !is_pinned && pins(innovation_->covariance));
   count_quiet();
-  last_covariance_ = innovation_->covariance;
+  last_covariance_ = innovation_->supported_covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
   if (!test_.is_alarmed() || moved_) return;
   if (robot_denies_the_shift(frame_s_)) return on_denial();
   moved_ = true;
+}
+
+/// What one frame shows of every direction is enough to say that the sensor stands. What the test tolerates,
+/// because all frames have it in common, is not known either.
+bool DriftWatch::pins(const Matrix6d& covariance) const {
+  const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
+  return tolerated * worst_sigma(covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
+         tolerated * worst_sigma(covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m;
+}
+
+/// A shift that one thing in view alone shows: either it was pushed, or the sensor has slid.
+void DriftWatch::follow_dispute(const BackgroundObservation& observation, bool is_disputed) {
+  if (!is_disputed || !observation.unsupported) {
+    if (frame_s_ - disputed_s_ > kEvidence_s) disputed_since_s_ = -1;
+    return;
+  }
+  disputed_ = *observation.unsupported;
+  disputed_s_ = frame_s_;
+  if (disputed_since_s_ < 0) disputed_since_s_ = frame_s_;
 }
 
 /// Frames on end that show the background where it was. The sequential test needs some frames to find a move,
@@ -223,7 +240,9 @@ bool DriftWatch::is_seen() const {
 }
 
 bool DriftWatch::is_out_of_sight() const {
-  return has_background() && frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s &&
+  const bool is_disputed = disputed_since_s_ >= 0 && frame_s_ - disputed_since_s_ > kOutOfSight_s;
+  const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s;
+  return has_background() && (is_disputed || is_nowhere) &&
          !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);
 }
 

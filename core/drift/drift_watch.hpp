@@ -51,11 +51,14 @@ class DriftWatch {
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
-  bool wants_check() const { return is_doubtful() || (robot_word_.has_doubt() && !model_wrong_ && !moved_); }
+  bool wants_check() const {
+    const bool is_disputed = disputed_since_s_ >= 0 && !robot_word_.agrees_within(kEvidence_s, frame_s_);
+    return is_doubtful() || is_disputed || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
+  }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
   /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden,
-  /// dark or elsewhere, and the robot has not spoken.
+  /// dark or elsewhere, or one thing in view says that it has slid; and the robot has not spoken.
   bool is_out_of_sight() const;
   /// The sensor was away: what was seen before says nothing of where it is now.
   void on_gap() { quiet_frames_ = 0; }
@@ -78,6 +81,8 @@ class DriftWatch {
   bool lies_elsewhere(const BackgroundAlignment& found) const;
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
+  bool pins(const Matrix6d& covariance) const;
+  void follow_dispute(const BackgroundObservation& observation, bool is_disputed);
   void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
@@ -85,6 +90,7 @@ class DriftWatch {
   void refine(const BackgroundObservation& observation, double now_s);
   void absorb(double now_s);
   void absorb_what_moved_as_one(double now_s);
+  void absorb_what_was_pushed(double now_s);
   void take(const std::vector<std::uint8_t>& chosen);
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
@@ -119,6 +125,9 @@ class DriftWatch {
   int frames_ = 0, quiet_frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, lost_s_ = -1e9, absorbed_s_ = 0,
          learnt_s_ = -1;
+  double disputed_since_s_ = -1,
+         disputed_s_ = -1e9;  // a shift without support shows, in the window disputed_
+  CellWindow disputed_;
   double pinned_s_ = -1e9;                          // last time the background showed every direction
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
   double in_front_s_ = -1e9;                        // last time something was

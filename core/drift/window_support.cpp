@@ -8,11 +8,15 @@
 namespace calibrd {
 namespace {
 
+/// The test takes the tolerance off whole, this adds it to the noise: where there is little of that, half of
+/// it is nearer to the same.
+constexpr double kTolerated = 0.5;
+
 TileSums window_at(const TiledFit& fit, std::size_t column, std::size_t row) {
   TileSums sums;
   for (std::size_t r = row; r < row + kWindowTiles; ++r) {
     for (std::size_t c = column; c < column + kWindowTiles; ++c) {
-      const TileSums& tile = fit.tiles[r * static_cast<std::size_t>(fit.tiles_per_row) + c];
+      const TileSums& tile = fit.tiles[r * kTilesPerRow + c];
       sums.information += tile.information;
       sums.gradient += tile.gradient;
     }
@@ -23,7 +27,7 @@ TileSums window_at(const TiledFit& fit, std::size_t column, std::size_t row) {
 }  // namespace
 
 double squares_beyond_tolerance(const Vector6d& shift, const Matrix6d& covariance) {
-  return shift.dot((covariance + Matrix6d::Identity()).ldlt().solve(shift));
+  return shift.dot((covariance + kTolerated * kTolerated * Matrix6d::Identity()).ldlt().solve(shift));
 }
 
 std::optional<WindowLeftOut> least_shift_without_a_window(const TiledFit& fit, const Matrix6d& move) {
@@ -34,7 +38,7 @@ std::optional<WindowLeftOut> least_shift_without_a_window(const TiledFit& fit, c
   }
   std::optional<WindowLeftOut> best;
   double least = std::numeric_limits<double>::infinity();
-  const auto columns = static_cast<std::size_t>(fit.tiles_per_row), rows = fit.tiles.size() / columns;
+  const std::size_t columns = kTilesPerRow, rows = fit.tiles.size() / columns;
   for (std::size_t row = 0; row + kWindowTiles <= rows; ++row) {
     for (std::size_t column = 0; column + kWindowTiles <= columns; ++column) {
       const TileSums window = window_at(fit, column, row);
@@ -49,7 +53,7 @@ std::optional<WindowLeftOut> least_shift_without_a_window(const TiledFit& fit, c
           move * solution.head<6>(), move * covariance.topLeftCorner<6, 6>() * move.transpose());
       if (squares >= least) continue;
       least = squares;
-      best = WindowLeftOut{solution, window.information};
+      best = WindowLeftOut{solution, window.information, column, row};
     }
   }
   return best;

@@ -13,8 +13,8 @@ constexpr int kBackgroundParameters = 7;
 using BackgroundVector = Eigen::Matrix<double, kBackgroundParameters, 1>;
 using BackgroundMatrix = Eigen::Matrix<double, kBackgroundParameters, kBackgroundParameters>;
 
-/// Cells to each side of one tile of the image, and tiles to each side of a window.
-constexpr int kTileSide = 16;
+/// Tiles, square ones, to a row of the image, whatever its size, and tiles to each side of a window.
+constexpr int kTilesPerRow = 8;
 constexpr std::size_t kWindowTiles = 3;
 
 /// Normal equations of the cells of one tile.
@@ -25,8 +25,7 @@ struct TileSums {
 
 /// A linear least-squares fit whose sums are kept by tiles, row-major.
 struct TiledFit {
-  std::span<const TileSums> tiles;
-  int tiles_per_row = 0;
+  std::span<const TileSums> tiles;                          ///< rows of kTilesPerRow
   BackgroundVector at = BackgroundVector::Zero();           ///< what the sums are linearized about
   BackgroundVector information = BackgroundVector::Zero();  ///< known before: diagonal, about 0
   double worth = 1;                                         ///< of the sums, against `information`
@@ -36,6 +35,7 @@ struct TiledFit {
 struct WindowLeftOut {
   BackgroundVector solution = BackgroundVector::Zero();
   BackgroundMatrix left_out = BackgroundMatrix::Zero();  ///< information of the window, not weighted
+  std::size_t column = 0, row = 0;                       ///< of its first tile
 };
 
 /// A box that is pushed moves what it shows as the sensor's move would, and where nothing else tells of that

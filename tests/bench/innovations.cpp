@@ -34,7 +34,8 @@ std::vector<RecordedInnovation> read_innovations(const std::filesystem::path& pa
     for (int i = 0; i < 6; ++i) one.innovation.supported_shift[i] = record[at++];
     for (int row = 0; row < 6; ++row)
       for (int column = 0; column <= row; ++column)
-        one.innovation.supported_covariance(row, column) = one.innovation.covariance(column, row) = record[at++];
+        one.innovation.supported_covariance(row, column) = one.innovation.supported_covariance(column, row) =
+            record[at++];
     one.innovation.common_share = record[at];
     all.push_back(one);
   }

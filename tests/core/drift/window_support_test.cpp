@@ -26,7 +26,8 @@ Pose in_sensor_axes(double x, double y, double z) {
 
 class PushedBox : public WatchedRoom {
  protected:
-  explicit PushedBox(Room room = corner({0.3})) : WatchedRoom(std::move(room)) {}
+  explicit PushedBox(Room room = corner({0.3}), const DriftSettings& settings = {})
+      : WatchedRoom(std::move(room), settings) {}
   BackgroundObservation seen_from(const Pose& T_base_sensor) {
     BackgroundMatcher matcher(watch_.background());
     const View view = room_.seen_from(T_base_sensor, joints_now());
@@ -38,6 +39,16 @@ class PushedBox : public WatchedRoom {
   static double sigmas(const Vector6d& shift, const Matrix6d& covariance) {
     return std::sqrt(shift.dot(covariance.ldlt().solve(shift)));
   }
+};
+
+class AbsorbedBox : public PushedBox {
+ protected:
+  static DriftSettings quick() {
+    DriftSettings settings;
+    settings.absorb_s = 5;
+    return settings;
+  }
+  AbsorbedBox() : PushedBox(corner({0.3}), quick()) {}
 };
 
 class TwoBoxes : public PushedBox {
@@ -68,6 +79,42 @@ TEST_F(PushedBox, IsNoMoveOfTheSensor) {
   EXPECT_EQ(moved_at_frame_, -1);
 }
 
+TEST_F(AbsorbedBox, OnceTheRobotHasSaidThatTheSensorStandsIsBackground) {
+  watch_for(4);
+  room_.blocks.back().middle.x() += kPushed_m;
+  watch_for(12);
+  EXPECT_FALSE(watch_.is_in_place()) << "nobody has said that it was the box";
+  for (int i = 0; i < 8; ++i) {
+    check(Vector6d::Zero());
+    watch_for(1);
+  }
+  watch_for(3);
+  EXPECT_TRUE(watch_.is_in_place());
+}
+
+TEST_F(PushedBox, ASlideThatOneThingAloneShowsIsNoEvidenceThatTheSensorStands) {
+  watch_for(4);
+  EXPECT_TRUE(watch_.is_in_place());
+  moved_.tail<3>() = 0.004 * true_T_base_sensor().linear().col(0);
+  EXPECT_EQ(watch_for(3.5), DriftVerdict::no_evidence);
+  EXPECT_FALSE(watch_.is_in_place());
+  EXPECT_TRUE(watch_.wants_check());
+  EXPECT_TRUE(watch_.is_out_of_sight());
+  check(Vector6d::Zero());
+  watch_for(0.2);
+  EXPECT_FALSE(watch_.is_out_of_sight()) << "the robot says that it is the box";
+}
+
+TEST_F(PushedBox, ASlideThatTheRobotShowsTooIsAMove) {
+  watch_for(4);
+  moved_.tail<3>() = kPushed_m * true_T_base_sensor().linear().col(0);
+  for (int posture = 0; posture < 4; ++posture) {
+    watch_for(1);
+    check(moved_);
+  }
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
 TEST_F(TwoBoxes, TogetherShowAMoveAlongThatDirection) {
   const auto seen = seen_from(in_sensor_axes(kPushed_m, 0, 0));
   EXPECT_NEAR(along_x(seen.supported_shift), kPushed_m, 0.003);
@@ -92,12 +139,12 @@ TEST_F(PushedBox, InTheLittleThatIsLeftOfTheBackgroundIsNoMoveEither) {
 }
 
 TEST(WindowSupport, OfAgreeingTilesNoneIsMissed) {
-  std::vector<TileSums> tiles(16);
+  std::vector<TileSums> tiles(8 * 6);
   for (auto& tile : tiles) {
     tile.information.setIdentity();
     tile.gradient.setConstant(3);
   }
-  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  const TiledFit fit{tiles, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
   const auto least = least_shift_without_a_window(fit, Matrix6d::Identity());
   ASSERT_TRUE(least);
   EXPECT_TRUE(least->solution.isApproxToConstant(3));
@@ -105,18 +152,18 @@ TEST(WindowSupport, OfAgreeingTilesNoneIsMissed) {
 }
 
 TEST(WindowSupport, TheOneThatPullsIsLeftOut) {
-  std::vector<TileSums> tiles(16);
+  std::vector<TileSums> tiles(8 * 6);
   for (auto& tile : tiles) tile.information.setIdentity();
-  tiles[6].gradient.setConstant(50);
-  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  tiles[12].gradient.setConstant(50);
+  const TiledFit fit{tiles, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
   const auto least = least_shift_without_a_window(fit, Matrix6d::Identity());
   ASSERT_TRUE(least);
   EXPECT_TRUE(least->solution.isZero(1e-9));
 }
 
 TEST(WindowSupport, NothingSeenHasNoSupport) {
-  const std::vector<TileSums> tiles(16);
-  const TiledFit fit{tiles, 4, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
+  const std::vector<TileSums> tiles(8 * 6);
+  const TiledFit fit{tiles, BackgroundVector::Zero(), BackgroundVector::Zero(), 1};
   EXPECT_FALSE(least_shift_without_a_window(fit, Matrix6d::Identity()));
 }
 
