@@ -70,7 +70,7 @@ Result<json::object> read_body(std::string_view body, std::string_view content_t
     return fail(ApiError::bad_json,
                 place(body, used) + ": " + (failure ? failure.message() : "text after the end"));
   if (const auto doubled = find_doubled_key(body))
-    return fail(ApiError::bad_json, "the key \"" + *doubled + "\" stands twice");
+    return fail(ApiError::bad_value, *doubled + ": the key stands twice in one object; which one is meant?");
   const auto value = parser.release();
   const auto* object = value.if_object();
   if (!object) return fail(ApiError::bad_json, "an object { … } is wanted");

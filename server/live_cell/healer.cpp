@@ -73,9 +73,12 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !is_starting_; });  // it may be the one that is just being started
   const auto found = patients_.find(calibration.sensor_id);
-  if (found == patients_.end() || found->second.calibration != calibration.id || !calibration.finished)
-    return;
+  if (found == patients_.end() || !calibration.finished) return;
   Patient& patient = found->second;
+  if (patient.calibration != calibration.id) {  // somebody's own
+    if (calibration.current) patient.wants_all = false;
+    return;
+  }
   patient.calibration.clear();
   if (patient.is_refining) {  // however it has ended: there is a pose, or the sensor has moved and is next
     patient.is_refining = false;
@@ -90,6 +93,12 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   const bool eager = patient.attempts < kEagerAttempts && calibration.status == api::JobStatus::failed;
   patient.due = Clock::now() + (eager ? Clock::duration(0) : pause_after(patient.attempts));
   changed_.notify_all();
+}
+
+void Healer::on_choice(const std::string& sensor_id) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = patients_.find(sensor_id); found != patients_.end())
+    found->second.wants_all = false;
 }
 
 bool Healer::tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const {

@@ -50,6 +50,9 @@ class Healer {
   /// Of every calibration that has ended; `seen_at`: when its last view was taken.
   void on_calibration(const api::CalibrationReport& calibration, Clock::time_point seen_at);
 
+  /// Somebody has chosen another pose for the sensor: it is not made better unasked.
+  void on_choice(const std::string& sensor_id);
+
   HealingMode mode() const { return settings_.mode; }
   /// Id of a calibration of the sensor that waits to be activated; empty: none, or it has moved since.
   std::string candidate(const std::string& sensor_id) const;

@@ -230,6 +230,7 @@ Result<api::CalibrationReport> LiveCell::activate_calibration(std::string_view i
   if (!entry) return entry.error();
   if (auto activated = store_.activate(*found, (*entry)->sensor->basis()); !activated)
     return fail(ApiError::storage_failed, activated.error().message());
+  healer_.on_choice(found->sensor_id);
   publish(*found, {}, stored_background(*found));
   return jobs_.find(std::string(id));
 }

@@ -56,6 +56,7 @@ class Healing : public ::testing::Test {
     report.sensor_id = "eye";
     report.status = status;
     report.activate = activate;
+    report.current = activate && status == api::JobStatus::succeeded;
     report.result.emplace();
     report.result->sigma_position_m = sigma_m;
     report.result->sigma_rotation_rad = 1e-4;
@@ -137,6 +138,22 @@ TEST_F(Healing, SensorThatMovesWhileItsPoseIsMadeBetterIsHealedAtOnce) {
   ASSERT_TRUE(wait_for(3));
   EXPECT_EQ(cancelled_, std::vector<std::string>{"c2"});
   EXPECT_TRUE(requests_[2].after_move && requests_[2].patience);
+}
+
+TEST_F(Healing, PoseThatSomebodyHasChosenIsNotMadeBetterUnasked) {
+  begin(HealingMode::automatic, 300ms);
+  for (const bool by_calibration : {true, false}) {
+    const auto before = requests_.size();
+    set_state(api::PoseState::drifted);
+    ASSERT_TRUE(wait_for(before + 1));
+    set_state(api::PoseState::calibrated);
+    end(std::string("c").append(std::to_string(before + 1)), api::JobStatus::succeeded, true, 0.002);
+    if (by_calibration)
+      end("mine", api::JobStatus::succeeded);
+    else
+      healer_->on_choice("eye");
+    EXPECT_FALSE(wait_for(before + 2, 600ms));
+  }
 }
 
 TEST_F(Healing, SaysWhenItTriesAgain) {
