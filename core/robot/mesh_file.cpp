@@ -20,8 +20,9 @@
 #include <string>
 #include <string_view>
 
+#include "core/robot/collada_nodes.hpp"
 #include "core/robot/robot_model_error.hpp"
-#include "core/robot/xml_depth.hpp"
+#include "core/robot/xml_tags.hpp"
 
 namespace calibrd {
 namespace {
@@ -87,6 +88,8 @@ std::optional<std::string> refusal_of_collada(std::string_view text) {
     return "it is no XML in UTF-8";
   if (xml_depth(text) > kMaxColladaDepth)
     return "elements more than " + std::to_string(kMaxColladaDepth) + " deep";
+  if (!nodes_come_to_an_end(text))
+    return "its nodes instance each other without end, or its names hold entities";
   return std::nullopt;
 }
 

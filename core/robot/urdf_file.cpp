@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "core/robot/robot_model_error.hpp"
-#include "core/robot/xml_depth.hpp"
+#include "core/robot/xml_tags.hpp"
 
 namespace calibrd {
 namespace {

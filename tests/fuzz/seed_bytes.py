@@ -84,13 +84,14 @@ def chunk(kind: bytes, data: bytes) -> bytes:
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 
-def png(width: int, height: int, depth: int, color: int, interlaced: int = 0, extra: bytes = b"") -> bytes:
+def png(width: int, height: int, depth: int, color: int, interlaced: int = 0, extra: bytes = b"",
+        level: int = -1) -> bytes:
     channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color]
     rng = random.Random(1)
     rows = b"".join(bytes([y % 5]) + rng.randbytes((width * channels * depth + 7) // 8) for y in range(height))
     palette = chunk(b"PLTE", bytes(range(256)) * 3) if color == 3 else b""
     header = struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, interlaced)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + palette + extra + chunk(b"IDAT", zlib.compress(rows))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + palette + extra + chunk(b"IDAT", zlib.compress(rows, level))
             + chunk(b"IEND", b""))
 
 
@@ -98,10 +99,12 @@ def png_seeds() -> dict[str, bytes]:
     text = chunk(b"tEXt", b"Comment\x00a capture") + chunk(b"zTXt", b"k\x00\x00" + zlib.compress(b"text"))
     kinds = ((16, 0), (8, 0), (4, 0), (2, 0), (1, 0), (8, 2), (16, 2), (8, 3), (2, 3), (8, 4), (16, 4), (8, 6), (16, 6))
     seeds = {f"bits{depth}_color{color}": b"\x01" + png(16, 12, depth, color) for depth, color in kinds}
+    # Not compressed: what a fuzzer changes are pixels then, not codes.
+    seeds |= {f"stored_bits{depth}_color{color}": b"\x03" + png(16, 12, depth, color, level=0) for depth, color in kinds}
     seeds["text"] = b"\x01" + png(16, 12, 16, 0, extra=text)
     seeds["transparent"] = b"\x01" + png(16, 12, 16, 0, extra=chunk(b"tRNS", b"\x00\x05"))
-    seeds["interlaced"] = b"\x00" + png(1, 1, 16, 0, interlaced=1)
-    seeds["wide"] = b"\x00" + png(200, 2, 16, 0)
+    seeds["interlaced"] = b"\x02" + png(1, 1, 16, 0, interlaced=1)
+    seeds["wide"] = b"\x02" + png(200, 2, 16, 0)
     return seeds
 
 
