@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongest = 1U << 16U;
+constexpr std::size_t kChanges = 2000;
 constexpr auto kChangingFor = std::chrono::seconds(1);
 
 std::string current;  // what the target is being given

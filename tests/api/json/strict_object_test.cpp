@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "api/problem/api_error.hpp"
+#include "core/base/text.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -52,6 +53,27 @@ TEST(StrictObject, ValuesAreCheckedForTypeAndRange) {
   EXPECT_FALSE(read_bool(object, "method", true));
   EXPECT_FALSE(read_text(object, "method", 10));
   EXPECT_FALSE(*read_int(object, "absent", 1, 2));
+}
+
+TEST(StrictObject, WhatIsQuotedInAnErrorIsUtf8) {
+  for (std::size_t before = 0; before < 4; ++before) {
+    const auto body = "{\"method\": \"" + std::string(before, 'x') + std::string(80, 'e') + "\"}";
+    std::string accents;
+    for (const char c : body) accents += c == 'e' ? "\xc3\xa9" : std::string(1, c);
+    const auto object = *read_body(accents, kJson, {"method"});
+    EXPECT_TRUE(is_utf8(read_text(object, "method", 10).error().detail));
+    EXPECT_TRUE(is_utf8(read_int(object, "method", 1, 2).error().detail));
+  }
+  EXPECT_TRUE(is_utf8(read_body("{}", "text/\xff", {}).error().detail));
+}
+
+TEST(StrictObject, CountsThatCountNothingAreZero) {
+  const auto object =
+      *read_body(R"({"a": -200, "b": 1e300, "c": 12, "d": 1e999})", kJson, {"a", "b", "c", "d"});
+  EXPECT_EQ(count_or_zero(object, "a"), 0U);
+  EXPECT_EQ(count_or_zero(object, "b"), 0U);
+  EXPECT_EQ(count_or_zero(object, "c"), 12U);
+  EXPECT_EQ(count_or_zero(object, "d"), 0U);
 }
 
 }  // namespace
