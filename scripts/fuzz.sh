@@ -14,7 +14,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly build=build/fuzz source=tests/fuzz
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}
-export LSAN_OPTIONS=suppressions=$PWD/$source/lsan.supp:print_suppressions=0
 
 seconds=${1:-600}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "fuzz.sh: '$seconds' is no number of seconds" >&2; exit 2; }
@@ -27,7 +26,7 @@ run() {
   local name=$1 options=()
   mkdir -p "$build/corpus/$name" "$build/findings/$name"
   if [ -f "$source/dictionaries/$name.dict" ]; then options+=("-dict=$source/dictionaries/$name.dict"); fi
-  TMPDIR=$scratch "$build/tests/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2560 -max_len=16384 \
+  TMPDIR=$scratch "$build/tests/fuzz_$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2560 -max_len=16384 \
     -print_final_stats=1 -artifact_prefix="$build/findings/$name/" "${options[@]}" \
     "$build/corpus/$name" "$build/tests/fuzz/corpora/$name" > "$build/findings/$name.log" 2>&1 || true
 }

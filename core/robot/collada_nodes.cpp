@@ -12,7 +12,7 @@ namespace calibrd {
 namespace {
 
 constexpr int kMaxDepth = 128;
-constexpr int kMaxNodes = 100'000;
+constexpr int kMaxNodes = 10'000;
 
 struct Node {
   std::vector<std::size_t> children;
