@@ -7,6 +7,7 @@
 #   scripts/setup.sh           install what is missing (as root, or through sudo)
 #   scripts/setup.sh --check   only say what is missing; exit status 1 if something is
 #   scripts/setup.sh --list    print the packages
+#   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 500 MB); scripts/fuzz.sh does so
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -17,6 +18,7 @@ readonly kLibraries=(
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev)                                                         # tests
+readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
 readonly kBoostPrefix=.deps/boost
 readonly kPclPrefix=.deps/pcl
 
@@ -36,7 +38,7 @@ distribution() {
   )
 }
 
-packages() { printf '%s\n' "${kTools[@]}" "${kLibraries[@]}"; }
+packages() { printf '%s\n' "${kTools[@]}" "${kLibraries[@]}" "${extra[@]}"; }
 
 missing_packages() {
   local installed
@@ -104,8 +106,9 @@ refuse() {
 }
 
 main() {
-  local os missing
+  local os missing extra=()
   os=$(distribution)
+  if [ "${1:-}" = --fuzz ]; then extra=("${kFuzzing[@]}") && shift; fi
   [ "${1:-}" != --list ] || { packages; return; }
   case "$os" in
     debian:12 | debian:13 | ubuntu:24.04) ;;
@@ -118,7 +121,7 @@ main() {
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
-  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list"
+  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz"
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi

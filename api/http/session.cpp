@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/http/session.hpp"
 
-#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -12,6 +11,7 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 
+#include "api/http/request_message.hpp"
 #include "api/routes/responses.hpp"
 
 namespace calibrd::api {
@@ -24,20 +24,6 @@ namespace http = beast::http;
 constexpr std::size_t kReadAtOnce = 4096;
 constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
 
-std::optional<Request> request_of(http::request<http::string_body>& message) {
-  auto target = parse_target(message.target());
-  if (!target) return std::nullopt;
-  Request request{
-      std::string(message.method_string()), std::move(target->first), std::move(target->second), {}, {}};
-  for (const auto& field : message) {
-    std::string name(field.name_string());
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-    request.headers[name] = std::string(field.value());
-  }
-  request.body = std::move(message.body());
-  return request;
-}
-
 template <class Body>
 http::response<Body> heading(const Response& response, bool keep_alive) {
   http::response<Body> message{static_cast<http::status>(response.status), 11};
@@ -46,16 +32,6 @@ http::response<Body> heading(const Response& response, bool keep_alive) {
   message.set("X-Content-Type-Options", "nosniff");
   message.keep_alive(keep_alive);
   return message;
-}
-
-/// The problem a client is told when its request could not be read; nothing when nobody is there to be told.
-std::optional<ApiError> problem_of(beast::error_code why) {
-  if (why == http::error::header_limit) return ApiError::header_too_large;
-  if (why == http::error::body_limit) return ApiError::body_too_large;
-  const bool gone = why == http::error::end_of_stream || why == http::error::partial_message;
-  if (!gone && why.category() == make_error_code(http::error::bad_method).category())
-    return ApiError::bad_request;
-  return std::nullopt;
 }
 
 bool wants_continue(const http::request<http::string_body>& message) {
@@ -67,7 +43,7 @@ bool wants_continue(const http::request<http::string_body>& message) {
 asio::awaitable<void> Session::run() {
   while (!context_.stopping) {  // no && with co_await: GCC 12 evaluates the latter whatever the former says
     if (!co_await await_request()) break;
-    Parser parser;
+    RequestParser parser;
     const auto failure = co_await read(parser);
     if (failure) {
       co_await refuse_unreadable(failure);
@@ -105,9 +81,8 @@ asio::awaitable<bool> Session::await_request() {
 
 /// Reads the rest of the request: header and body each have a deadline in all, however slowly they trickle
 /// in.
-asio::awaitable<beast::error_code> Session::read(Parser& parser) {
-  parser.header_limit(context_.settings.header_limit);
-  parser.body_limit(context_.settings.body_limit);
+asio::awaitable<beast::error_code> Session::read(RequestParser& parser) {
+  set_limits(parser, context_.settings);
   beast::error_code failure;
   stream_.expires_after(context_.settings.header_timeout);
   co_await http::async_read_header(stream_, buffer_, parser,
@@ -124,7 +99,7 @@ asio::awaitable<beast::error_code> Session::read(Parser& parser) {
 }
 
 /// True: the connection goes on.
-asio::awaitable<bool> Session::answer(Parser& parser) {
+asio::awaitable<bool> Session::answer(RequestParser& parser) {
   const auto begin = std::chrono::steady_clock::now();
   auto message = parser.release();
   const bool keep_alive = message.keep_alive() && !context_.stopping;

@@ -5,10 +5,9 @@
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 
 #include "api/http/http_server.hpp"
+#include "api/http/request_message.hpp"
 
 namespace calibrd::api {
 
@@ -36,11 +35,9 @@ class Session {
   void close() { stream_.close(); }
 
  private:
-  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
-
   boost::asio::awaitable<bool> await_request();
-  boost::asio::awaitable<boost::beast::error_code> read(Parser& parser);
-  boost::asio::awaitable<bool> answer(Parser& parser);
+  boost::asio::awaitable<boost::beast::error_code> read(RequestParser& parser);
+  boost::asio::awaitable<bool> answer(RequestParser& parser);
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <boost/json/parse.hpp>
+#include <limits>
 #include <utility>
 
 #include "api/json/calibration_result_object.hpp"
@@ -84,6 +85,28 @@ json::array workspace_json(const std::vector<WorkspaceError>& errors) {
   return all;
 }
 
+/// What was infinite was written as null. Read as 0 it would claim certainty.
+double sigma_of(const json::object& object, std::string_view key) {
+  return number_or(object, key, std::numeric_limits<double>::infinity());
+}
+
+/// 36 numbers, null for an infinite one.
+std::optional<Matrix6d> covariance_of(const json::value& rows) {
+  if (!rows.is_array() || rows.get_array().size() != 6) return std::nullopt;
+  Matrix6d covariance;
+  for (int r = 0; r < 6; ++r) {
+    const auto* row = rows.get_array()[static_cast<std::size_t>(r)].if_array();
+    if (!row || row->size() != 6) return std::nullopt;
+    for (int c = 0; c < 6; ++c) {
+      const auto& value = (*row)[static_cast<std::size_t>(c)];
+      if (!value.is_number() && !value.is_null()) return std::nullopt;
+      covariance(r, c) =
+          value.is_null() ? std::numeric_limits<double>::infinity() : value.to_number<double>();
+    }
+  }
+  return covariance;
+}
+
 /// Calls `take` with each object of an array; what is no array is left aside.
 template <class Take>
 void for_each_object(const json::object& object, std::string_view key, const Take& take) {
@@ -95,9 +118,8 @@ void for_each_object(const json::object& object, std::string_view key, const Tak
 
 void read_evidence(const json::object& object, CalibrationResult& result) {
   for_each_object(object, "links", [&](const json::object& link) {
-    result.links.push_back({text_or(link, "link", ""),
-                            static_cast<std::size_t>(number_or(link, "predicted", 0)),
-                            number_or(link, "coverage", 0)});
+    result.links.push_back(
+        {text_or(link, "link", ""), count_or_zero(link, "predicted"), number_or(link, "coverage", 0)});
   });
   for_each_object(object, "weak_directions", [&](const json::object& weak) {
     const bool is_rotation = text_or(weak, "kind", "") == "rotation";
@@ -107,13 +129,13 @@ void read_evidence(const json::object& object, CalibrationResult& result) {
       result.weak_directions.push_back({text_or(weak, "what", ""),
                                         is_rotation,
                                         {(*d)[0], (*d)[1], (*d)[2]},
-                                        number_or(weak, is_rotation ? "sigma_rad" : "sigma_m", 0)});
+                                        sigma_of(weak, is_rotation ? "sigma_rad" : "sigma_m")});
   });
   for_each_object(object, "workspace", [&](const json::object& point) {
     result.workspace.push_back(
         {{text_or(point, "name", ""),
           {number_or(point, "x", 0), number_or(point, "y", 0), number_or(point, "z", 0)}},
-         number_or(point, "sigma_m", 0)});
+         sigma_of(point, "sigma_m")});
   });
   if (object.contains("held_out_residual_m"))
     result.held_out_residual_m = number_or(object, "held_out_residual_m", 0);
@@ -136,7 +158,7 @@ void read_joint_zeros(const json::object& object, CalibrationResult& result) {
   for (const auto& zero : zeros->get_array())
     if (const auto* entry = zero.if_object())
       result.joint_zeros.push_back(
-          {text_or(*entry, "joint", ""), number_or(*entry, "zero", 0), number_or(*entry, "sigma", 0)});
+          {text_or(*entry, "joint", ""), number_or(*entry, "zero", 0), sigma_of(*entry, "sigma")});
 }
 
 Result<CalibrationResult> read_pose_part(const json::object& object, CalibrationResult result) {
@@ -147,10 +169,10 @@ Result<CalibrationResult> read_pose_part(const json::object& object, Calibration
     if (!pose) return fail(ApiError::bad_value, "T_base_sensor: " + pose.error().message());
     result.T_base_sensor = *pose;
   }
-  const auto* covariance = object.if_contains("covariance");
-  const auto numbers = covariance ? flat_numbers(*covariance) : std::nullopt;
-  if (!numbers || numbers->size() != 36) return fail(ApiError::bad_value, "covariance");
-  for (int i = 0; i < 36; ++i) result.covariance(i / 6, i % 6) = (*numbers)[static_cast<std::size_t>(i)];
+  const auto* rows = object.if_contains("covariance");
+  const auto covariance = rows ? covariance_of(*rows) : std::nullopt;
+  if (!covariance) return fail(ApiError::bad_value, "covariance");
+  result.covariance = *covariance;
   return result;
 }
 
@@ -219,13 +241,13 @@ Result<CalibrationResult> parse_calibration_result(const std::string& text) {
   const auto verdict = text_or(*object, "verdict", "");
   for (const auto& [value, name] : kVerdicts)
     if (verdict == name) result.verdict = value;
-  result.sigma_position_m = number_or(*object, "sigma_position_m", 0);
-  result.sigma_rotation_rad = number_or(*object, "sigma_rotation_rad", 0);
+  result.sigma_position_m = sigma_of(*object, "sigma_position_m");
+  result.sigma_rotation_rad = sigma_of(*object, "sigma_rotation_rad");
   if (const auto* correction = object->if_contains("depth_correction"); correction && correction->is_object())
     result.depth_correction = depth_correction_of(correction->get_object());
   result.residual_rms_m = number_or(*object, "residual_rms_m", 0);
   result.coverage = number_or(*object, "coverage", 0);
-  result.views = static_cast<int>(number_or(*object, "views", 0));
+  result.views = static_cast<int>(count_or_zero(*object, "views"));
   if (const auto* used = object->if_contains("used_guess"))
     result.used_guess = used->is_bool() && used->get_bool();
   if (const auto* times = object->if_contains("time_ms"); times && times->is_object())

@@ -11,6 +11,7 @@
 #include "api/json/doubled_key.hpp"
 #include "api/json/json_text.hpp"
 #include "api/problem/api_error.hpp"
+#include "core/base/text.hpp"
 #include "core/robot/nearest_name.hpp"
 
 namespace calibrd::api {
@@ -28,8 +29,11 @@ const json::value* find(const json::object& object, std::string_view key) {
 
 Error wrong(std::string_view key, const json::value& value, const std::string& wanted) {
   auto shown = json::serialize(value);
-  if (value.is_double()) shown = json_text(value), shown.pop_back();  // 5.5, not 5.5E0, and no end of line
-  if (shown.size() > kShownBytes) shown = shown.substr(0, kShownBytes) + "…";
+  if (value.is_double()) {  // 5.5, not 5.5E0
+    shown = json_text(value);
+    shown.pop_back();  // the end of its line
+  }
+  shown = shortened(shown, kShownBytes, "…");
   return fail(ApiError::bad_value, std::string(key) + ": " + shown + " is not " + wanted);
 }
 
@@ -56,12 +60,20 @@ bool is_json(std::string_view content_type) {
   return type == "application/json";
 }
 
+/// A header may hold any byte, an answer in JSON may not.
+std::string in_ascii(std::string_view text) {
+  std::string ascii(text);
+  std::replace_if(
+      ascii.begin(), ascii.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return ascii;
+}
+
 }  // namespace
 
 Result<json::object> read_body(std::string_view body, std::string_view content_type,
                                std::initializer_list<std::string> known) {
   if (body.empty()) return json::object{};
-  if (!is_json(content_type)) return fail(ApiError::wrong_content_type, std::string(content_type));
+  if (!is_json(content_type)) return fail(ApiError::wrong_content_type, in_ascii(content_type));
   json::parser parser;
   boost::system::error_code failure;
   const auto used = parser.write_some(body.data(), body.size(), failure);
@@ -130,6 +142,12 @@ std::optional<std::vector<double>> flat_numbers(const json::value& value) {
     }
   }
   return numbers;
+}
+
+std::size_t count_or_zero(const json::object& object, std::string_view key) {
+  constexpr double kLargest = 1e9;  // beyond any count of ours; a cast of what does not fit is undefined
+  const double number = number_or(object, key, 0);
+  return number >= 0 && number <= kLargest ? static_cast<std::size_t>(number) : 0;
 }
 
 double number_or(const json::object& object, std::string_view key, double otherwise) {

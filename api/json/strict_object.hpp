@@ -3,6 +3,7 @@
 #pragma once
 #include <boost/json/object.hpp>
 #include <boost/json/value.hpp>
+#include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ std::optional<std::vector<double>> flat_numbers(const boost::json::value& value)
 
 /// For objects this program wrote itself: the value where it is there and of its type.
 double number_or(const boost::json::object& object, std::string_view key, double otherwise);
+/// 0 as well for a number that counts nothing: negative, or beyond a thousand million.
+std::size_t count_or_zero(const boost::json::object& object, std::string_view key);
 std::string text_or(const boost::json::object& object, std::string_view key, std::string otherwise);
 
 }  // namespace calibrd::api

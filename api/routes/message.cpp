@@ -5,28 +5,10 @@
 #include <charconv>
 #include <string_view>
 
+#include "core/base/text.hpp"
+
 namespace calibrd::api {
 namespace {
-
-/// Length of the UTF-8 sequence that begins with `lead`; 0 for a byte that begins none.
-std::size_t sequence_length(unsigned char lead) {
-  if (lead < 0x80) return 1;
-  if (lead >= 0xc2 && lead < 0xe0) return 2;
-  if (lead >= 0xe0 && lead < 0xf0) return 3;
-  return lead >= 0xf0 && lead < 0xf5 ? 4 : 0;
-}
-
-/// What is not UTF-8 cannot be quoted in an answer.
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const auto length = sequence_length(static_cast<unsigned char>(text.front()));
-    if (length == 0 || length > text.size()) return false;
-    for (std::size_t i = 1; i < length; ++i)
-      if ((static_cast<unsigned char>(text[i]) & 0xc0U) != 0x80U) return false;
-    text.remove_prefix(length);
-  }
-  return true;
-}
 
 std::optional<std::string> percent_decoded(std::string_view text, bool plus_is_space) {
   std::string decoded;
@@ -44,7 +26,7 @@ std::optional<std::string> percent_decoded(std::string_view text, bool plus_is_s
       i += 2;
     }
   }
-  if (!is_utf8(decoded)) return std::nullopt;
+  if (!is_utf8(decoded)) return std::nullopt;  // it cannot be quoted in an answer
   return decoded;
 }
 

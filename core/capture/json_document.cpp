@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -22,9 +24,7 @@ std::string line_and_column(std::string_view text, std::size_t place) {
 /// The value as written, shortened: an error message is one line.
 std::string shown(const json::value& value) {
   constexpr std::size_t kLongest = 40;
-  std::string text = json::serialize(value);
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-  return text;
+  return shortened(json::serialize(value), kLongest, "...");
 }
 
 Error not_a(const char* expected, const std::string& name, const json::value& value) {

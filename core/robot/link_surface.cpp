@@ -4,6 +4,8 @@
 
 #include <urdf_model/link.h>
 
+#include <algorithm>
+
 #include "core/robot/mesh_file.hpp"
 #include "core/robot/mesh_path.hpp"
 #include "core/robot/primitives.hpp"
@@ -13,20 +15,22 @@
 namespace calibrd {
 namespace {
 
-bool are_sizes(const Eigen::Vector3d& sizes) { return sizes.allFinite() && (sizes.array() > 0).all(); }
+bool are_sizes(const Eigen::Vector3d& sizes) { return are_usable(sizes) && (sizes.array() > 0).all(); }
 
 Error bad_geometry(const char* what) { return {RobotModelError::bad_geometry, what}; }
 
 Result<TriangleMesh> read_mesh(const urdf::Mesh& mesh, const std::filesystem::path& urdf,
                                const RobotModelOptions& options) {
   const Eigen::Vector3d scale = to_eigen(mesh.scale);
-  if (!scale.allFinite() || (scale.array() == 0).any()) return bad_geometry("<mesh scale>");
+  if (!are_usable(scale) || (scale.array() == 0).any()) return bad_geometry("<mesh scale>");
   const auto file = find_mesh(mesh.filename, urdf, options.search_paths);
   if (!file) return file.error();
   const auto unscaled = read_mesh_file(*file);
   if (!unscaled) return unscaled.error();
   TriangleMesh scaled;
   append(scaled, *unscaled, Eigen::Affine3d(Eigen::Scaling(scale)));
+  if (!std::ranges::all_of(scaled.vertices, [](const auto& vertex) { return are_usable(vertex); }))
+    return bad_geometry("<mesh> larger than a million metres");
   return scaled;
 }
 
@@ -63,7 +67,7 @@ Result<TriangleMesh> join(const Shapes& shapes, const urdf::Link& link, const st
     };
     if (!shape || !shape->geometry) return in_link(bad_geometry("no <geometry>"));
     const Pose T_link_shape = to_pose(shape->origin);
-    if (!T_link_shape.matrix().allFinite()) return in_link({RobotModelError::bad_number, "<origin>"});
+    if (!are_usable(T_link_shape.matrix())) return in_link({RobotModelError::bad_number, "<origin>"});
     const auto mesh = shape_of(*shape->geometry, urdf, options);
     if (!mesh) return in_link(mesh.error());
     append(surface, *mesh, Eigen::Affine3d(T_link_shape));

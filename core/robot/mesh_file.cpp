@@ -2,15 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/robot/mesh_file.hpp"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
 #include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
 
+#include "core/robot/collada_nodes.hpp"
 #include "core/robot/robot_model_error.hpp"
+#include "core/robot/xml_tags.hpp"
 
 namespace calibrd {
 namespace {
@@ -47,10 +59,55 @@ Error unreadable(const std::filesystem::path& file, const std::string& reason) {
   return {RobotModelError::mesh_unreadable, file.string() + " (" + reason + ")"};
 }
 
+/// The kinds of files that robot models use, by their endings. Assimp knows some fifty more and chooses by
+/// what a file holds, whatever its name: readers that nobody here has tested, for files that nobody means.
+constexpr std::array<std::string_view, 3> kKinds{"stl", "dae", "obj"};
+constexpr std::size_t kMaxColladaDepth = 128;
+
+std::string kind_of(const std::filesystem::path& file) {
+  std::string kind = file.extension().string();
+  std::ranges::transform(kind, kind.begin(), [](unsigned char c) { return std::tolower(c); });
+  return kind.empty() ? kind : kind.substr(1);
+}
+
+/// Leaves the importer with the one reader that the file's name asks for.
+void keep_only(Assimp::Importer& importer, const std::string& kind) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    std::istringstream endings(importer.GetImporterInfo(i)->mFileExtensions);
+    const std::istream_iterator<std::string> first(endings), none;
+    if (std::find(first, none, kind) != none) continue;
+    const std::unique_ptr<Assimp::BaseImporter> reader(importer.GetImporter(i));
+    importer.UnregisterLoader(reader.get());  // which does not delete it
+  }
+}
+
+/// Why the text is not given to assimp's reader of Collada.
+std::optional<std::string> refusal_of_collada(std::string_view text) {
+  constexpr std::string_view kZipEnd = "PK\5\6";  // assimp would look into the archive
+  if (text.find('\0') != std::string_view::npos || text.find(kZipEnd) != std::string_view::npos)
+    return "it is no XML in UTF-8";
+  if (xml_depth(text) > kMaxColladaDepth)
+    return "elements more than " + std::to_string(kMaxColladaDepth) + " deep";
+  if (!nodes_come_to_an_end(text))
+    return "its nodes instance each other without end, or its names hold entities";
+  return std::nullopt;
+}
+
+/// Why the file is not given to assimp.
+std::optional<std::string> refusal(const std::filesystem::path& file, const std::string& kind) {
+  if (std::ranges::find(kKinds, kind) == kKinds.end()) return "it is no .stl, .dae or .obj";
+  if (kind != "dae") return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  return refusal_of_collada(std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
 }  // namespace
 
 Result<TriangleMesh> read_mesh_file(const std::filesystem::path& file) {
+  const std::string kind = kind_of(file);
+  if (const auto why = refusal(file, kind)) return unreadable(file, *why);
   Assimp::Importer importer;
+  keep_only(importer, kind);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);

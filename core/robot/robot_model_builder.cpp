@@ -99,11 +99,11 @@ Status RobotModelBuilder::add_joint(const urdf::Joint& source, int parent_link) 
   joint.child_link = static_cast<int>(model_.links_.size());
   joint.T_parent_joint = to_pose(source.parent_to_joint_origin_transform);
   joint.limits = limits_of(source);
-  if (!joint.T_parent_joint.matrix().allFinite())
+  if (!are_usable(joint.T_parent_joint.matrix()))
     return at_joint(RobotModelError::bad_number, joint.name, "<origin>");
   if (joint.type != JointType::fixed) {
     const Eigen::Vector3d axis = to_eigen(source.axis);
-    if (!axis.allFinite()) return at_joint(RobotModelError::bad_number, joint.name, "<axis>");
+    if (!are_usable(axis)) return at_joint(RobotModelError::bad_number, joint.name, "<axis>");
     if (axis.stableNorm() < 1e-9) return at_joint(RobotModelError::bad_axis, joint.name);
     joint.axis = axis.stableNormalized();
   }
@@ -132,6 +132,8 @@ Status RobotModelBuilder::link_mimics() {
       return at_joint(RobotModelError::bad_mimic, joint.name,
                       "mimics unknown joint '" + rule->joint_name + "', " +
                           name_hint(rule->joint_name, names_of(model_.joints_)));
+    if (!are_usable(Eigen::Vector2d(rule->multiplier, rule->offset)))
+      return at_joint(RobotModelError::bad_number, joint.name, "<mimic>");
     joint.mimic = MimicRule{followed, rule->multiplier, rule->offset};
   }
   return Done{};
@@ -167,6 +169,8 @@ Result<JointDrive> RobotModelBuilder::drive_of(std::size_t index) const {
   if (joint->type == JointType::fixed)
     return at_joint(RobotModelError::bad_mimic, model_.joints_[index].name,
                     "mimics the fixed joint '" + joint->name + "'");
+  if (!are_usable(Eigen::Vector2d(drive.multiplier, drive.offset)))
+    return at_joint(RobotModelError::bad_number, model_.joints_[index].name, "<mimic> of <mimic>");
   drive.position_index = joint->position_index;
   return drive;
 }

@@ -25,12 +25,12 @@ const char* text(RobotModelError code) {
     case RobotModelError::bad_axis:
       return "the joint axis has no direction; give <axis xyz=\"…\"/> a vector other than zero";
     case RobotModelError::bad_number:
-      return "not a finite number; correct the value in the URDF";
+      return "not a finite number, or beyond a million; correct the value in the URDF";
     case RobotModelError::bad_mimic:
       return "the <mimic> cannot be followed; let it name, directly or through others, a joint that moves by "
              "itself";
     case RobotModelError::bad_geometry:
-      return "not a solid size; give sizes greater than zero and a mesh scale without zeros";
+      return "not a solid size; give sizes in metres, greater than zero, and a mesh scale without zeros";
     case RobotModelError::mesh_not_found:
       return "mesh file not found; correct the path, or add the folder that holds it (for package://NAME/…: "
              "the folder "

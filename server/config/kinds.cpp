@@ -9,6 +9,7 @@
 #include "core/geometry/pose_numbers.hpp"
 #include "core/robot/nearest_name.hpp"
 #include "server/config/config_error.hpp"
+#include "server/config/quoted.hpp"
 
 namespace calibrd {
 namespace {
@@ -19,15 +20,6 @@ std::string number(double value) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
   return {buffer.data(), end};
-}
-
-std::string quoted(const std::string& text) {
-  std::string escaped = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') escaped += '\\';
-    escaped += c;
-  }
-  return escaped + '"';
 }
 
 /// The value as it would be written, for messages.

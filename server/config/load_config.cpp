@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/base/text.hpp"
 #include "core/robot/nearest_name.hpp"
 #include "drivers/robot/robot_drivers.hpp"
 #include "server/config/config_error.hpp"
@@ -72,7 +73,14 @@ Status enter_section(const RawEntry& entry, Config& config) {
   return Done{};
 }
 
+/// A file is UTF-8, or it is no TOML; variables and options may hold anything.
+Status check_encoding(const RawEntry& entry) {
+  if (is_utf8(join_path(entry.path)) && is_utf8(entry.value.text.value_or(""))) return Done{};
+  return Error{ConfigError::bad_value, entry.origin + ": it is not UTF-8"};
+}
+
 Status apply(const RawEntry& entry, LoadedConfig& loaded) {
+  if (auto status = check_encoding(entry); !status) return status;
   if (entry.value.is_empty_table) return enter_section(entry, loaded.config);
   const auto& table = settings_table();
   const auto setting =

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <map>
 
+#include "server/config/quoted.hpp"
 #include "server/config/setting.hpp"
 
 namespace calibrd {
@@ -32,8 +33,7 @@ std::string toml_key(const std::string& part) {
   const bool bare = !part.empty() && std::all_of(part.begin(), part.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '-' || c == '_';
   });
-  std::string quoted = "\"";
-  return bare ? part : quoted.append(part).append("\"");
+  return bare ? part : quoted(part);
 }
 
 /// "sensors.kinect2" of "sensors.kinect2.fx".
@@ -64,6 +64,13 @@ std::string in_table_cell(std::string text) {
   return escaped;
 }
 
+/// Where a value came from. The name of a variable may hold anything.
+std::string comment(std::string origin) {
+  std::replace_if(
+      origin.begin(), origin.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  return "  # " + origin;
+}
+
 }  // namespace
 
 std::string config_as_toml(const LoadedConfig& loaded) {
@@ -78,7 +85,7 @@ std::string config_as_toml(const LoadedConfig& loaded) {
       if (!sections.contains(section)) order.push_back(section);
       const auto origin = loaded.origins.find(join_path(path));
       sections[section] += toml_key(path.back()) + " = " + value +
-                           (origin == loaded.origins.end() ? "" : "  # " + origin->second) + "\n";
+                           (origin == loaded.origins.end() ? "" : comment(origin->second)) + "\n";
     }
   }
   std::string text;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "server/config/config_error.hpp"
+#include "server/config/stray_character.hpp"
 
 namespace calibrd {
 namespace {
@@ -85,12 +86,17 @@ Result<std::vector<RawEntry>> read_toml_file(const std::filesystem::path& file) 
   const std::string content{std::istreambuf_iterator<char>(stream), {}};
   if (!std::filesystem::is_regular_file(file) || !stream.is_open() || stream.bad())
     return Error{ConfigError::file_unreadable, file.string()};
+  const auto file_and_line = [&](std::size_t line) {
+    return file.filename().string() + ":" + std::to_string(line);
+  };
+  if (const auto line = line_of_stray_character(content))
+    return Error{ConfigError::not_toml,
+                 file_and_line(*line) + ": a character beyond ASCII outside comments and quotes"};
   const auto parsed = toml::parse(content);
   if (!parsed) {
     const auto& failure = parsed.error();
-    return Error{ConfigError::not_toml, file.filename().string() + ":" +
-                                            std::to_string(failure.source().begin.line) + ": " +
-                                            std::string(failure.description())};
+    return Error{ConfigError::not_toml,
+                 file_and_line(failure.source().begin.line) + ": " + std::string(failure.description())};
   }
   Flattener flattener(file);
   std::vector<std::string> path;
@@ -101,7 +107,7 @@ Result<std::vector<RawEntry>> read_toml_file(const std::filesystem::path& file) 
 RawValue parse_text_value(const std::string& text) {
   RawValue value;
   const auto folder = std::filesystem::current_path();
-  const auto parsed = toml::parse("value = " + text);
+  const auto parsed = toml::parse(line_of_stray_character(text) ? "" : "value = " + text);
   const toml::node* node = parsed ? parsed.table().get("value") : nullptr;
   if (node != nullptr && !node->is_table() && parsed.table().size() == 1)
     value = raw_value_of(*node, folder);

@@ -103,6 +103,15 @@ TEST(CalibrationResultJson, ReadsBackTheSame) {
   EXPECT_EQ(read->reasons[0].text, result.reasons[0].text);
 }
 
+TEST(CalibrationResultJson, WhatWasInfiniteIsNotReadBackAsCertain) {
+  auto result = accepted_result();
+  result.covariance(4, 4) = result.sigma_position_m = std::numeric_limits<double>::infinity();
+  const auto read = parse_calibration_result(calibration_result_json(result));
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_TRUE(std::isinf(read->covariance(4, 4)));
+  EXPECT_TRUE(std::isinf(read->sigma_position_m));
+}
+
 TEST(CalibrationResultJson, DamagedTextIsRefused) {
   EXPECT_FALSE(parse_calibration_result("{\"verdict\": \"accepted\""));
   EXPECT_FALSE(parse_calibration_result("{\"verdict\": \"accepted\", \"T_base_sensor\": [[1]]}"));

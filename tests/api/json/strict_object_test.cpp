@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "api/problem/api_error.hpp"
+#include "core/base/text.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -68,6 +69,26 @@ TEST(StrictObject, WholeNumberMayBeWrittenWithAPoint) {
   const auto object = *read_body(R"({"postures": 5.0, "method": 1e99})", kJson, {"postures", "method"});
   EXPECT_EQ(*read_int(object, "postures", 1, 50), 5);
   EXPECT_FALSE(read_int(object, "method", 1, 50));
+}
+
+TEST(StrictObject, WhatIsQuotedInAnErrorIsUtf8) {
+  std::string accents;
+  for (int i = 0; i < 40; ++i) accents += "\xc3\xa9";
+  for (const char* before : {"", "x"}) {  // a cut at an even and at an odd byte
+    const auto object = *read_body("{\"method\": \"" + (before + accents) + "\"}", kJson, {"method"});
+    EXPECT_TRUE(is_utf8(read_text(object, "method", 10).error().detail));
+    EXPECT_TRUE(is_utf8(read_int(object, "method", 1, 2).error().detail));
+  }
+  EXPECT_TRUE(is_utf8(read_body("{}", "text/\xff", {}).error().detail));
+}
+
+TEST(StrictObject, CountsThatCountNothingAreZero) {
+  const auto object =
+      *read_body(R"({"a": -200, "b": 1e300, "c": 12, "d": 1e999})", kJson, {"a", "b", "c", "d"});
+  EXPECT_EQ(count_or_zero(object, "a"), 0U);
+  EXPECT_EQ(count_or_zero(object, "b"), 0U);
+  EXPECT_EQ(count_or_zero(object, "c"), 12U);
+  EXPECT_EQ(count_or_zero(object, "d"), 0U);
 }
 
 }  // namespace

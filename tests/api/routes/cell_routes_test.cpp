@@ -120,6 +120,7 @@ TEST(Target, IsDecodedOrRefused) {
   EXPECT_EQ(target->first, "/a b/c");
   EXPECT_EQ(target->second.at("y"), "/ z");
   EXPECT_TRUE(target->second.contains("flag"));
+  EXPECT_FALSE(parse_target("/%e0%80%af"));  // not UTF-8: it could not be quoted in an answer
   EXPECT_EQ(parse_target("/%c3%a9")->first, "/é");
   for (const auto* bad : {"", "a", "/%", "/%g0", "/%00", "/?a=%1", "/%ff", "/%c3", "/?a=%e2%28%a1"})
     EXPECT_FALSE(parse_target(bad)) << bad;

@@ -126,6 +126,36 @@ TEST(MeshFile, BrokenFilesAreNamed) {
   expect_unreadable("unknown.xyzzy", "?");
 }
 
+TEST(MeshFile, OtherKindsAreRefusedWhateverTheyHold) {
+  expect_unreadable("a.ply", kAsciiStl);
+  expect_unreadable("a", kAsciiStl);
+  expect_unreadable("off.stl", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");  // assimp reads OFF
+  expect_tetrahedron(read("A.STL", kAsciiStl), {1, 2, 3});
+}
+
+TEST(MeshFile, ColladaThatWouldExhaustAssimpIsRefused) {
+  const auto with_nodes = [](const std::string& nodes) {
+    return collada("", "Z_UP", "</node>" + nodes + "<node id=\"last\">");
+  };
+  std::string deep, doubling;
+  for (int i = 0; i < 20'000; ++i) deep += "<node>";
+  for (int i = 0; i < 40; ++i) {
+    const auto instance = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+    doubling += "<node id=\"n" + std::to_string(i) + "\">" + instance + instance + "</node>";
+  }
+  expect_unreadable("deep.dae", with_nodes(deep));
+  expect_unreadable("doubling.dae", with_nodes(doubling + "<node id=\"n40\"/>"));
+  expect_unreadable("self.dae", collada("", "Z_UP", "<instance_node url=\"#n\"/>"));
+  expect_unreadable("entity.dae", collada("", "Z_UP", "<instance_node url=\"#&#110;\"/>"));
+  expect_unreadable("name.dae", with_nodes("<node name=\"a\"><instance_node url=\"#a\"/></node>"));
+  expect_unreadable("zip.dae", collada("", "Z_UP", "") + "PK\5\6");
+}
+
+TEST(MeshFile, ColladaNodesMayInstanceOthers) {
+  const auto text = collada("", "Z_UP", "<instance_node url=\"#m\"/></node><node id=\"m\">");
+  EXPECT_FALSE(read("a.dae", text).triangles.empty());
+}
+
 TEST(MeshFile, VertexThatIsNotANumberIsRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   expect_unreadable("nan.stl", binary_stl({{0, 0, 0, 1, 0, 0, 0, nan, 0}}));

@@ -33,6 +33,12 @@ std::string shape(const std::string& geometry) {
   return robot("<link name=\"housing\"><visual><geometry>" + geometry + "</geometry></visual></link>");
 }
 
+std::string repeated(const std::string& part, std::size_t times) {
+  std::string text;
+  for (std::size_t i = 0; i < times; ++i) text += part;
+  return text;
+}
+
 struct BadRobot {
   const char* name;
   std::string urdf;
@@ -112,6 +118,19 @@ const BadRobot kBadRobots[] = {
     {"negative_box", shape("<box size='1 -1 1'/>"), RobotModelError::bad_geometry, "link 'housing': <box>"},
     {"flat_cylinder", shape("<cylinder radius='1' length='0'/>"), RobotModelError::bad_geometry,
      "<cylinder>"},
+    {"huge_cylinder", shape("<cylinder radius='1e300' length='1'/>"), RobotModelError::bad_geometry,
+     "<cylinder>"},
+    {"huge_origin", robot(links({"a", "b"}) + joint("j", "revolute", "a", "b", "<origin xyz='1e300 0 0'/>")),
+     RobotModelError::bad_number, "'j' <origin>"},
+    {"huge_mimic",
+     robot(links({"a", "b", "c"}) + joint("j", "revolute", "a", "b") +
+           joint("k", "revolute", "b", "c", "<mimic joint='j' multiplier='1e300'/>")),
+     RobotModelError::bad_number, "'k' <mimic>"},
+    {"nested_without_end", robot(repeated("<a>", 100'000)), RobotModelError::urdf_invalid, "64 deep"},
+    {"nested_beside_a_comment", robot(repeated("<a b='<!--'>", 100'000)), RobotModelError::urdf_invalid,
+     "64 deep"},
+    {"a_thousand_links", robot(repeated("<link name='a'/>", 1001)), RobotModelError::urdf_invalid,
+     "1000 links"},
     {"point_sphere", shape("<sphere radius='0'/>"), RobotModelError::bad_geometry, "<sphere>"},
 };
 

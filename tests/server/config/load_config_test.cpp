@@ -136,6 +136,24 @@ TEST_F(LoadConfig, BrokenTomlNamesTheLine) {
       << failure("[robot]\nurdf = \n");
 }
 
+TEST_F(LoadConfig, CharactersBeyondAsciiBelongInCommentsAndQuotes) {
+  const std::string good =
+      "# Stra\xc3\x9f"
+      "e\n" +
+      std::string(kSmallest) + "[storage]\npath = \"/daten/\xc3\xa9\" # \xe2\x82\xac\n";
+  EXPECT_EQ(failure(good), "");
+  for (const char* bad :
+       {"\xc3\xa9 = 1\n", "[server.\xce\x95]\n", "x = 1 \xc3\xa9\n", "x = \"\"\" \\\n \xc3\xa9\"\"\"\n"})
+    EXPECT_NE(failure(std::string(kSmallest) + bad).find("beyond ASCII"), std::string::npos) << bad;
+  EXPECT_NE(failure("a = 'x'\n\xc3\xa9 = 1\n").find("cell.toml:2"), std::string::npos);
+}
+
+TEST_F(LoadConfig, VariablesAndOptionsThatAreNotUtf8AreRefused) {
+  EXPECT_FALSE(load(kSmallest, {"CALIBRD_ROBOT__HOST=\xff"}));
+  EXPECT_FALSE(load(kSmallest, {}, {"robot.host=\xc3"}));
+  EXPECT_TRUE(load(kSmallest, {"OTHER=\xff", "CALIBRD_ROBOT__HOST=\xc3\xa9"}));
+}
+
 TEST_F(LoadConfig, EmptyFileIsAFileWithoutKeys) {
   EXPECT_NE(failure("").find("robot.urdf"), std::string::npos) << failure("");
 }

@@ -25,10 +25,11 @@ TEST(PrintConfig, WhatIsPrintedReadsBackTheSame) {
   const auto first =
       load_config({std::nullopt,
                    {},
-                   {"robot.urdf=/r.urdf", "robot.host=h", "sensors.k.fx=365.5", "sensors.k.fy=1",
-                    "sensors.k.cx=2", "sensors.k.cy=3", "sensors.k.guess=[1,2,3,0,0,0,1]",
-                    "sensors.k.workspace.tray=[0.4,-0.2,0.1]", "robot.joints.j1.coupling.j0=0.5",
-                    "pose.max_unverified=90s", "motion.routes.tour.postures_deg=[[0, 20.5], [10, -25]]"}});
+                   {"robot.urdf=/r.urdf", "robot.host=a\tb\"c\\d\x01", "robot.joints.odd\nname.axis=1",
+                    "sensors.k.fx=365.5", "sensors.k.fy=1", "sensors.k.cx=2", "sensors.k.cy=3",
+                    "sensors.k.guess=[1,2,3,0,0,0,1]", "sensors.k.workspace.tray=[0.4,-0.2,0.1]",
+                    "robot.joints.j1.coupling.j0=0.5", "pose.max_unverified=90s",
+                    "motion.routes.tour.postures_deg=[[0, 20.5], [10, -25]]"}});
   ASSERT_TRUE(first) << first.error().message();
   std::ofstream(folder / "printed.toml") << config_as_toml(*first);
   const auto second = load_config({folder / "printed.toml", {}, {}});
