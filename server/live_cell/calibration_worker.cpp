@@ -196,9 +196,8 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
 
 /// Stores the end, and that it is current now if it is to be. False: it could not be stored.
 bool CalibrationJobs::store_end(CalibrationReport& report, const std::string& basis) {
-  auto stored = store_.finish(report);
   const bool activate = report.status == JobStatus::succeeded && report.activate;
-  if (stored && activate) stored = store_.activate(report, basis);
+  const auto stored = store_.finish(report, activate ? std::optional(basis) : std::nullopt);
   report.current = stored && activate;
   if (!stored) report.message = "The result could not be stored: " + stored.error().message();
   return stored.has_value();

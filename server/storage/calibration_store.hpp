@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -35,13 +36,17 @@ class CalibrationStore {
  public:
   /// Opens or makes the store; its folder is made when absent. It belongs to this process until it is closed.
   /// Calibrations that had not ended when the last daemon did are recorded as failed.
-  static Result<std::unique_ptr<CalibrationStore>> open(const std::filesystem::path& file);
+  /// `vfs`: see Database::open().
+  static Result<std::unique_ptr<CalibrationStore>> open(const std::filesystem::path& file,
+                                                        const std::string& vfs = {});
 
   /// Records that a calibration was asked for.
   Status add(const api::CalibrationReport& calibration, const api::CalibrationRequest& request);
 
-  /// Records how it ended; once for each calibration.
-  Status finish(const api::CalibrationReport& calibration);
+  /// Records how it ended; once for each calibration. `activated_with`: it becomes its sensor's current one
+  /// in the same stroke, found with this basis (see CurrentCalibration).
+  Status finish(const api::CalibrationReport& calibration,
+                const std::optional<std::string>& activated_with = {});
 
   /// Makes a stored calibration the current one of its sensor. `basis`: see CurrentCalibration.
   Status activate(const api::CalibrationReport& calibration, const std::string& basis);
@@ -67,6 +72,8 @@ class CalibrationStore {
       : lock_(std::move(lock)), database_(std::move(database)) {}
   Status prepare_schema();
   Status end_interrupted();
+  Status write(const std::function<Status()>& statements);
+  Status insert_activation(const api::CalibrationReport& calibration, const std::string& basis);
   Result<std::optional<api::CalibrationReport>> find_where(const std::string& condition,
                                                            const std::string& value);
 
