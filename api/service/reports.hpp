@@ -149,11 +149,22 @@ struct RobotReport {
   std::vector<LinkPlacement> links;            ///< at `joints`; empty without them
 };
 
+/// Whether calibrations can be stored.
+struct StorageReport {
+  bool ready = true;
+  /// "good", "recovered" (a damaged store was put aside), "unsaved" (its second copy of a pose is behind),
+  /// "full", "read_only", "damaged", "failing"
+  std::string state = "good";
+  std::string reason;  ///< what is wrong, and what to do; empty while it is good
+  bool operator==(const StorageReport&) const = default;
+};
+
 struct CellReport {
   std::string version;
   Seconds uptime{0};
   RobotReport robot;
   std::vector<SensorReport> sensors;
+  StorageReport storage;
 };
 
 enum class JobStatus { queued, collecting, running, succeeded, failed, cancelled };

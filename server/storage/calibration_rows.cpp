@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The part of CalibrationStore that reads.
-#include <array>
-#include <new>
 #include <utility>
 
 #include "api/json/calibration_result_json.hpp"
 #include "api/routes/names.hpp"
 #include "server/storage/background_text.hpp"
-#include "server/storage/calibration_store.hpp"
+#include "server/storage/guarded.hpp"
 
 namespace calibrd {
 namespace {
@@ -62,20 +60,20 @@ Result<CalibrationReport> read_row(const Statement& row) {
 }  // namespace
 
 Result<std::optional<std::vector<float>>> CalibrationStore::background(const std::string& calibration_id) {
-  const std::lock_guard lock(mutex_);
-  Statement query(database_, "SELECT depths FROM backgrounds WHERE calibration_id = ?");
-  query.bind(calibration_id);
-  std::optional<std::vector<float>> found;
-  if (query.next()) found = parse_background(query.text(0));
-  if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
-  return found;
+  return guarded([&]() -> Result<std::optional<std::vector<float>>> {
+    Statement query(*database_, "SELECT depths FROM backgrounds WHERE calibration_id = ?");
+    query.bind(calibration_id);
+    std::optional<std::vector<float>> found;
+    if (query.next()) found = parse_background(query.text(0));
+    if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+    return found;
+  });
 }
 
-Result<std::optional<CalibrationReport>> CalibrationStore::find_where(const std::string& condition,
-                                                                      const std::string& value) {
-  const std::lock_guard lock(mutex_);
-  Statement query(database_, kSelect + condition);
-  query.bind(value);
+/// The caller holds mutex_.
+Result<std::optional<CalibrationReport>> CalibrationStore::find_row(const std::string& id) {
+  Statement query(*database_, std::string(kSelect) + "WHERE c.id = ?");
+  query.bind(id);
   std::optional<CalibrationReport> found;
   if (query.next()) {
     auto report = read_row(query);
@@ -83,69 +81,70 @@ Result<std::optional<CalibrationReport>> CalibrationStore::find_where(const std:
     found = *std::move(report);
   }
   if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+  if (const auto owed = owed_ends_.find(id); owed != owed_ends_.end()) found = owed->second;
   return found;
 }
 
 Result<std::optional<CalibrationReport>> CalibrationStore::find(const std::string& id) {
-  return find_where("WHERE c.id = ?", id);
+  return guarded([&] { return find_row(id); });
 }
 
 Result<std::optional<CurrentCalibration>> CalibrationStore::current(const std::string& sensor_id) {
-  CurrentCalibration current;
-  {
-    const std::lock_guard lock(mutex_);
+  return guarded([&]() -> Result<std::optional<CurrentCalibration>> {
     Statement query(
-        database_,
+        *database_,
         "SELECT calibration_id, basis, number IN (SELECT activation FROM drifts) FROM activations "
         "WHERE sensor_id = ? ORDER BY number DESC LIMIT 1");
     query.bind(sensor_id);
-    if (query.next()) {
-      current.calibration.id = query.text(0);
-      current.basis = query.text(1);
-      current.drifted = query.number(2) != 0;
+    if (!query.next()) {
+      if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+      return std::optional<CurrentCalibration>();
     }
+    auto report = find_row(query.text(0));
+    if (!report) return report.error();
+    if (!*report) return std::optional<CurrentCalibration>();
+    CurrentCalibration current{**std::move(report), query.text(1), query.number(2) != 0};
     if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
-  }
-  if (current.calibration.id.empty()) return std::optional<CurrentCalibration>();
-  auto report = find(current.calibration.id);
-  if (!report) return report.error();
-  if (!*report) return std::optional<CurrentCalibration>();
-  current.calibration = **std::move(report);
-  return std::optional(std::move(current));
+    current.drifted = current.drifted || owed_drifts_.contains(current.calibration.id);
+    return std::optional(std::move(current));
+  });
 }
 
 Result<api::HistoryPage> CalibrationStore::history(const api::HistoryQuery& query) {
-  const std::lock_guard lock(mutex_);
-  std::string sql = std::string(kSelect) + "WHERE c.sensor_id = ? ";
-  if (!query.before.empty()) sql += "AND c.number < (SELECT number FROM calibrations WHERE id = ?) ";
-  Statement rows(database_, sql + "ORDER BY c.number DESC LIMIT ?");
-  rows.bind(query.sensor_id);
-  if (!query.before.empty()) rows.bind(query.before);
-  rows.bind(query.limit + 1);
-  api::HistoryPage page;
-  while (rows.next()) {
-    if (static_cast<int>(page.calibrations.size()) == query.limit) {
-      page.more = true;
-      break;
+  return guarded([&]() -> Result<api::HistoryPage> {
+    std::string sql = std::string(kSelect) + "WHERE c.sensor_id = ? ";
+    if (!query.before.empty()) sql += "AND c.number < (SELECT number FROM calibrations WHERE id = ?) ";
+    Statement rows(*database_, sql + "ORDER BY c.number DESC LIMIT ?");
+    rows.bind(query.sensor_id);
+    if (!query.before.empty()) rows.bind(query.before);
+    rows.bind(query.limit + 1);
+    api::HistoryPage page;
+    while (rows.next()) {
+      if (static_cast<int>(page.calibrations.size()) == query.limit) {
+        page.more = true;
+        break;
+      }
+      auto report = read_row(rows);
+      if (!report) return report.error();
+      const auto owed = owed_ends_.find(report->id);
+      page.calibrations.push_back(owed == owed_ends_.end() ? *std::move(report) : owed->second);
     }
-    auto report = read_row(rows);
-    if (!report) return report.error();
-    page.calibrations.push_back(*std::move(report));
-  }
-  if (auto status = rows.status(StorageError::cannot_read); !status) return status.error();
-  return page;
+    if (auto status = rows.status(StorageError::cannot_read); !status) return status.error();
+    return page;
+  });
 }
 
 Result<std::optional<KeyedStart>> CalibrationStore::find_start(const std::string& sensor_id,
                                                                const std::string& idempotency_key) {
-  const std::lock_guard lock(mutex_);
-  Statement query(database_,
-                  "SELECT id, fingerprint FROM calibrations WHERE sensor_id = ? AND idempotency_key = ?");
-  query.bind(sensor_id).bind(idempotency_key);
-  std::optional<KeyedStart> found;
-  if (query.next()) found = KeyedStart{query.text(0), query.text(1)};
-  if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
-  return found;
+  return guarded([&]() -> Result<std::optional<KeyedStart>> {
+    Statement query(*database_,
+                    "SELECT id, fingerprint FROM calibrations WHERE sensor_id = ? AND idempotency_key = ?");
+    query.bind(sensor_id).bind(idempotency_key);
+    std::optional<KeyedStart> found;
+    if (query.next()) found = KeyedStart{query.text(0), query.text(1)};
+    if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+    return found;
+  });
 }
 
 }  // namespace calibrd

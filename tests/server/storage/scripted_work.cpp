@@ -96,6 +96,7 @@ void ScriptedWork::run() {
 
 bool ScriptedWork::add_current(const std::string& id) {
   if (!store_ && !reopen()) return false;
+  store_->look();
   return calibrate(id, true);
 }
 
