@@ -34,35 +34,39 @@ Status CalibrationStore::write_now(const std::function<Status()>& statements) {
   return status;
 }
 
-/// `sensor_id`: whose current calibration it may change; empty: nobody's.
+/// `sensor_id`: whose current calibration it may change. The caller holds mutex_.
 Status CalibrationStore::write(const std::string& sensor_id, const std::function<Status()>& statements) {
-  return guarded([&] {
-    auto status = write_now(statements);
-    if (status && !sensor_id.empty()) save_current(sensor_id);
-    return status;
-  });
+  auto status = write_now(statements);
+  if (status && !sensor_id.empty()) save_current(sensor_id);
+  return status;
 }
 
 Status CalibrationStore::add(const CalibrationReport& calibration, const api::CalibrationRequest& request) {
-  return write({}, [&] {
-    Statement insert(
-        *database_,
-        "INSERT INTO calibrations (id, sensor_id, created_ms, method, postures, activate, fingerprint, "
-        "idempotency_key) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-    insert.bind(calibration.id).bind(calibration.sensor_id).bind(ms_of(calibration.created));
-    insert.bind(std::string(api::name_of(calibration.method))).bind(calibration.postures_wanted);
-    insert.bind(calibration.activate ? 1 : 0).bind(request.fingerprint);
-    request.idempotency_key.empty() ? insert.bind_null() : insert.bind(request.idempotency_key);
-    insert.next();
-    return insert.status(StorageError::cannot_write);
-  });
+  return guarded([&] { return write_now([&] { return insert_start(calibration, request); }); });
+}
+
+Status CalibrationStore::insert_start(const CalibrationReport& calibration,
+                                      const api::CalibrationRequest& request) {
+  Statement insert(
+      *database_,
+      "INSERT INTO calibrations (id, sensor_id, created_ms, method, postures, activate, fingerprint, "
+      "idempotency_key) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(calibration.id).bind(calibration.sensor_id).bind(ms_of(calibration.created));
+  insert.bind(std::string(api::name_of(calibration.method))).bind(calibration.postures_wanted);
+  insert.bind(calibration.activate ? 1 : 0).bind(request.fingerprint);
+  request.idempotency_key.empty() ? insert.bind_null() : insert.bind(request.idempotency_key);
+  insert.next();
+  return insert.status(StorageError::cannot_write);
 }
 
 Status CalibrationStore::finish(const CalibrationReport& calibration,
                                 const std::optional<std::string>& activated_with) {
-  return write(activated_with ? calibration.sensor_id : std::string(), [&]() -> Status {
-    auto inserted = insert_end(calibration);
-    return inserted && activated_with ? insert_activation(calibration, *activated_with) : inserted;
+  return guarded([&] {
+    if (!activated_with) return write_now([&] { return insert_end(calibration); });
+    return write(calibration.sensor_id, [&] {
+      auto inserted = insert_end(calibration);
+      return inserted ? insert_activation(calibration, *activated_with) : inserted;
+    });
   });
 }
 
@@ -85,7 +89,8 @@ void CalibrationStore::owe_end(const CalibrationReport& calibration) {
 }
 
 Status CalibrationStore::activate(const CalibrationReport& calibration, const std::string& basis) {
-  return write(calibration.sensor_id, [&] { return insert_activation(calibration, basis); });
+  return guarded(
+      [&] { return write(calibration.sensor_id, [&] { return insert_activation(calibration, basis); }); });
 }
 
 Status CalibrationStore::insert_activation(const CalibrationReport& calibration, const std::string& basis) {

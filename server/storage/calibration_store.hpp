@@ -90,6 +90,7 @@ class CalibrationStore {
   auto guarded(const Call& call) -> decltype(call());
   Status write(const std::string& sensor_id, const std::function<Status()>& statements);
   Status write_now(const std::function<Status()>& statements);
+  Status insert_start(const api::CalibrationReport& calibration, const api::CalibrationRequest& request);
   Status insert_end(const api::CalibrationReport& calibration);
   Status insert_activation(const api::CalibrationReport& calibration, const std::string& basis);
   Status insert_drift(const std::string& calibration_id);

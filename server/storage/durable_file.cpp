@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/storage/durable_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <memory>
 #include <string>
 
 namespace calibrd {
@@ -50,6 +53,15 @@ Status sync_folder(const fs::path& folder) {
   const Descriptor descriptor(named, O_RDONLY | O_DIRECTORY);
   if (descriptor.number() < 0 || ::fsync(descriptor.number()) != 0) return file_error(errno, named);
   return Done{};
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  const std::unique_ptr<DIR, int (*)(DIR*)> stream(::opendir(folder.empty() ? "." : folder.c_str()),
+                                                   [](DIR* open) { return open ? ::closedir(open) : 0; });
+  while (const auto* entry = stream ? ::readdir(stream.get()) : nullptr) names.emplace_back(entry->d_name);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 Status make_folders_durably(const fs::path& folder) {

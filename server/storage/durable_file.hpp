@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "server/storage/storage_error.hpp"
@@ -19,6 +21,10 @@ Status make_folders_durably(const std::filesystem::path& folder);
 
 /// Makes the disk know which files are in the folder.
 Status sync_folder(const std::filesystem::path& folder);
+
+/// The names in a folder, sorted; none where it cannot be read. (std::filesystem's iterators end the program
+/// where memory is short.)
+std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 /// An errno as an error of storage; `why` where it says nothing more special.
 Error file_error(int number, const std::filesystem::path& file,

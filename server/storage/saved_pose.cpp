@@ -110,11 +110,9 @@ void forget_pose(const fs::path& folder, const std::string& sensor_id) {
 
 std::vector<SavedPose> read_saved_poses(const fs::path& folder) {
   std::vector<SavedPose> poses;
-  std::error_code failure;
-  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-       entry.increment(failure)) {
-    if (entry->path().extension() != ".json") continue;
-    std::ifstream stream(entry->path(), std::ios::binary);
+  for (const auto& name : names_in(folder)) {
+    if (!name.ends_with(".json")) continue;
+    std::ifstream stream(folder / name, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (auto pose = parse_saved_pose(text)) poses.push_back(*std::move(pose));
   }

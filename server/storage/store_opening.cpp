@@ -120,14 +120,11 @@ Result<fs::path> put_aside(const fs::path& file) {
 
 std::vector<fs::path> find_put_aside(const fs::path& file) {
   std::vector<fs::path> found;
-  std::error_code failure;
-  for (fs::directory_iterator entry(file.has_parent_path() ? file.parent_path() : ".", failure), end;
-       !failure && entry != end; entry.increment(failure)) {
-    const auto name = entry->path().filename().string();
+  const auto prefix = damaged_prefix(file);
+  for (const auto& name : names_in(file.parent_path())) {
     const bool is_companion = name.ends_with("-wal") || name.ends_with("-shm");
-    if (name.starts_with(damaged_prefix(file)) && !is_companion) found.push_back(entry->path());
+    if (name.starts_with(prefix) && !is_companion) found.push_back(file.parent_path() / name);
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 

@@ -55,25 +55,31 @@ TEST_P(SystemCalls, EachMayFailAndNothingReportedIsLost) {
   RecordProperty("calls", n - 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    One, SystemCalls,
-    ::testing::Values(Fault{VfsCall::open, SQLITE_CANTOPEN, false}, Fault{VfsCall::read, SQLITE_IOERR_READ, false},
-                      Fault{VfsCall::write, SQLITE_IOERR_WRITE, false}, Fault{VfsCall::write, SQLITE_FULL, false},
-                      Fault{VfsCall::truncate, SQLITE_IOERR_TRUNCATE, false},
-                      Fault{VfsCall::sync, SQLITE_IOERR_FSYNC, false},
-                      Fault{VfsCall::remove, SQLITE_IOERR_DELETE, false},
-                      Fault{VfsCall::size, SQLITE_IOERR_FSTAT, false},
-                      Fault{VfsCall::lock, SQLITE_IOERR_LOCK, false},
-                      Fault{VfsCall::shm_map, SQLITE_IOERR_SHMMAP, false},
-                      Fault{VfsCall::shm_lock, SQLITE_IOERR_SHMLOCK, false}),
-    [](const auto& info) { return name_of(info.param.call) + std::to_string(info.param.code); });
+INSTANTIATE_TEST_SUITE_P(One, SystemCalls,
+                         ::testing::Values(Fault{VfsCall::open, SQLITE_CANTOPEN, false},
+                                           Fault{VfsCall::read, SQLITE_IOERR_READ, false},
+                                           Fault{VfsCall::write, SQLITE_IOERR_WRITE, false},
+                                           Fault{VfsCall::write, SQLITE_FULL, false},
+                                           Fault{VfsCall::truncate, SQLITE_IOERR_TRUNCATE, false},
+                                           Fault{VfsCall::sync, SQLITE_IOERR_FSYNC, false},
+                                           Fault{VfsCall::remove, SQLITE_IOERR_DELETE, false},
+                                           Fault{VfsCall::size, SQLITE_IOERR_FSTAT, false},
+                                           Fault{VfsCall::lock, SQLITE_IOERR_LOCK, false},
+                                           Fault{VfsCall::shm_map, SQLITE_IOERR_SHMMAP, false},
+                                           Fault{VfsCall::shm_lock, SQLITE_IOERR_SHMLOCK, false}),
+                         [](const auto& info) {
+                           return name_of(info.param.call) + std::to_string(info.param.code);
+                         });
 
-INSTANTIATE_TEST_SUITE_P(
-    FromThenOn, SystemCalls,
-    ::testing::Values(Fault{VfsCall::write, SQLITE_FULL, true}, Fault{VfsCall::write, SQLITE_READONLY, true},
-                      Fault{VfsCall::sync, SQLITE_IOERR_FSYNC, true}, Fault{VfsCall::read, SQLITE_IOERR_READ, true},
-                      Fault{VfsCall::shm_map, SQLITE_IOERR_SHMSIZE, true}),
-    [](const auto& info) { return name_of(info.param.call) + std::to_string(info.param.code); });
+INSTANTIATE_TEST_SUITE_P(FromThenOn, SystemCalls,
+                         ::testing::Values(Fault{VfsCall::write, SQLITE_FULL, true},
+                                           Fault{VfsCall::write, SQLITE_READONLY, true},
+                                           Fault{VfsCall::sync, SQLITE_IOERR_FSYNC, true},
+                                           Fault{VfsCall::read, SQLITE_IOERR_READ, true},
+                                           Fault{VfsCall::shm_map, SQLITE_IOERR_SHMSIZE, true}),
+                         [](const auto& info) {
+                           return name_of(info.param.call) + std::to_string(info.param.code);
+                         });
 
 }  // namespace
 }  // namespace calibrd

@@ -4,6 +4,8 @@
 
 #include <sqlite3.h>
 
+#include "tests/server/storage/allocation_faults.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -23,6 +25,13 @@ api::CalibrationReport report_of(const std::string& id) {
 
 }  // namespace
 
+/// A call of the store: what fails there must come back as an error.
+template <class Call>
+static auto ask(const Call& call) {
+  const AllocationsCount counted;
+  return call();
+}
+
 bool ScriptedWork::note(const Status& status) {
   if (!status) errors_.push_back(status.error());
   return status.has_value();
@@ -30,7 +39,7 @@ bool ScriptedWork::note(const Status& status) {
 
 bool ScriptedWork::reopen() {
   store_.reset();
-  auto opened = CalibrationStore::open(file_, vfs_);
+  auto opened = ask([&] { return CalibrationStore::open(file_, vfs_); });
   if (!opened) return note(opened.error());
   store_ = *std::move(opened);
   return true;
@@ -38,11 +47,11 @@ bool ScriptedWork::reopen() {
 
 bool ScriptedWork::calibrate(const std::string& id, bool activate) {
   const auto report = report_of(id);
-  if (!note(store_->add(report, {}))) return false;
+  if (!note(ask([&] { return store_->add(report, {}); }))) return false;
   added_.insert(id);
   if (activate) maybe_current_.insert(id);
-  if (!note(store_->finish(report, activate ? std::optional<std::string>("fx 365") : std::nullopt)))
-    return false;
+  const auto basis = activate ? std::optional<std::string>("fx 365") : std::nullopt;
+  if (!note(ask([&] { return store_->finish(report, basis); }))) return false;
   finished_.insert(id);
   if (activate) current_ = id, maybe_current_.clear();
   return true;
@@ -50,26 +59,30 @@ bool ScriptedWork::calibrate(const std::string& id, bool activate) {
 
 void ScriptedWork::activate(const std::string& id) {
   maybe_current_.insert(id);
-  if (!finished_.contains(id) || !note(store_->activate(report_of(id), "fx 366"))) return;
+  const auto report = report_of(id);
+  if (!finished_.contains(id) || !note(ask([&] { return store_->activate(report, "fx 366"); }))) return;
   current_ = id;
   maybe_current_.clear();
   drifted_.clear();
 }
 
 void ScriptedWork::drift(const std::string& id) {
-  if (current_ == id && note(store_->add_drift(id))) drifted_.insert(id);
+  if (current_ == id && note(ask([&] { return store_->add_drift(id); }))) drifted_.insert(id);
 }
 
 void ScriptedWork::add_background(const std::string& id) {
-  if (finished_.contains(id) && note(store_->add_background(id, std::vector<float>(3000, 1.5F))))
+  const std::vector<float> depth_m(3000, 1.5F);
+  if (finished_.contains(id) && note(ask([&] { return store_->add_background(id, depth_m); })))
     backgrounds_.insert(id);
 }
 
 void ScriptedWork::read_all() {
-  if (const auto page = store_->history({kSensor, 10, ""}); !page) note(page.error());
-  if (const auto found = store_->find("a"); !found) note(found.error());
-  if (const auto current = store_->current(kSensor); !current) note(current.error());
-  if (const auto background = store_->background("b"); !background) note(background.error());
+  const api::HistoryQuery query{kSensor, 10, ""};
+  const std::string a = "a", b = "b", sensor = kSensor;
+  if (const auto page = ask([&] { return store_->history(query); }); !page) note(page.error());
+  if (const auto found = ask([&] { return store_->find(a); }); !found) note(found.error());
+  if (const auto current = ask([&] { return store_->current(sensor); }); !current) note(current.error());
+  if (const auto depths = ask([&] { return store_->background(b); }); !depths) note(depths.error());
 }
 
 void ScriptedWork::run() {
@@ -85,7 +98,8 @@ void ScriptedWork::run() {
     calibrate("c", true);
     read_all();
     activate("a");
-    if (const auto report = report_of("interrupted"); note(store_->add(report, {}))) added_.insert(report.id);
+    if (const auto report = report_of("interrupted"); note(ask([&] { return store_->add(report, {}); })))
+      added_.insert(report.id);
   }
   if (reopen()) {
     drift("a");
