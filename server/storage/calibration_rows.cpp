@@ -7,6 +7,7 @@
 #include "api/json/calibration_result_json.hpp"
 #include "api/routes/names.hpp"
 #include "server/storage/background_text.hpp"
+#include "server/storage/evidence_rows.hpp"
 #include "server/storage/guarded.hpp"
 
 namespace calibrd {
@@ -86,7 +87,14 @@ Result<std::optional<CalibrationReport>> CalibrationStore::find_row(const std::s
 }
 
 Result<std::optional<CalibrationReport>> CalibrationStore::find(const std::string& id) {
-  return guarded([&] { return find_row(id); });
+  return guarded([&] {
+    auto found = find_row(id);
+    if (!found || !*found || (*found)->evidence) return found;
+    auto evidence = select_evidence(*database_, id);
+    if (!evidence) return Result<std::optional<CalibrationReport>>(evidence.error());
+    (*found)->evidence = *std::move(evidence);
+    return found;
+  });
 }
 
 Result<std::optional<CurrentCalibration>> CalibrationStore::current(const std::string& sensor_id) {

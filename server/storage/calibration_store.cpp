@@ -7,6 +7,7 @@
 #include "api/json/calibration_result_json.hpp"
 #include "api/routes/names.hpp"
 #include "server/storage/background_text.hpp"
+#include "server/storage/evidence_rows.hpp"
 #include "server/storage/guarded.hpp"
 
 namespace calibrd {
@@ -80,7 +81,9 @@ Status CalibrationStore::insert_end(const CalibrationReport& calibration) {
   insert.bind(calibration.postures_seen);
   calibration.result ? insert.bind(api::calibration_result_json(*calibration.result)) : insert.bind_null();
   insert.next();
-  return insert.status(StorageError::cannot_write);
+  auto inserted = insert.status(StorageError::cannot_write);
+  if (!inserted || !calibration.evidence) return inserted;
+  return insert_evidence(*database_, calibration.id, *calibration.evidence);
 }
 
 void CalibrationStore::owe_end(const CalibrationReport& calibration) {

@@ -55,8 +55,8 @@ class CalibrationStore {
   /// Records that a calibration was asked for.
   Status add(const api::CalibrationReport& calibration, const api::CalibrationRequest& request);
 
-  /// Records how it ended; once for each calibration. `activated_with`: it becomes its sensor's current one
-  /// in the same stroke, found with this basis (see CurrentCalibration).
+  /// Records how it ended, with its evidence; once for each calibration. `activated_with`: it becomes its
+  /// sensor's current one in the same stroke, found with this basis (see CurrentCalibration).
   Status finish(const api::CalibrationReport& calibration,
                 const std::optional<std::string>& activated_with = {});
 
@@ -123,7 +123,8 @@ class CalibrationStore {
   std::optional<Error> little_room_;            // on the disk
   std::string put_aside_;                       // the newest damaged database beside it
   std::map<std::string, std::string> unsaved_;  // sensors whose second copy is behind, and why
-  bool is_behind_ = false;                      // some second copy may be
+  bool has_ended_interrupted_ = false;
+  bool is_behind_ = false;                                   // some second copy may be
   std::map<std::string, api::CalibrationReport> owed_ends_;  // by id
   std::set<std::string> owed_drifts_;                        // calibration ids
 

@@ -71,10 +71,14 @@ Status CalibrationStore::take_up() {
   unusable_.reset();
   failure_.reset();
   database_.emplace(*std::move(opened));
-  if (auto ended = end_interrupted(); !ended) {
-    unusable_ = Error{ended.error().code, file_.string() + " (" + ended.error().detail + ")"};
-    return *unusable_;
+  // Only those of the last daemon: what this one has begun while it had no database goes on.
+  const auto ended = has_ended_interrupted_ ? Status(Done{}) : end_interrupted();
+  if (!ended) {
+    const Error error{ended.error().code, file_.string() + " (" + ended.error().detail + ")"};
+    const auto stands = stand_in(error);
+    return stands ? error : stands.error();
   }
+  has_ended_interrupted_ = true;
   save_all_current();
   return Done{};
 }
@@ -82,6 +86,8 @@ Status CalibrationStore::take_up() {
 Result<Database> CalibrationStore::open_or_replace(std::vector<SavedPose>& saved) {
   auto opened = open_whole(file_, vfs_, saved);
   if (opened || !is_damaged_store(file_, opened.error())) return opened;
+  for (const auto& pose : saved)
+    (void)save_pose(saved_pose_folder(file_), pose);  // before it is out of reach
   if (auto aside = put_aside(file_); !aside) return aside.error();
   return open_whole(file_, vfs_, saved);
 }
@@ -97,9 +103,9 @@ Status CalibrationStore::recover(Database& database, const std::vector<SavedPose
   return transaction.commit();
 }
 
-/// Without the database on the disk: the saved poses, in memory, and nothing may be written.
+/// Without the database on the disk: the saved poses, in memory, and nothing may be written. The one on the
+/// disk is closed: what is put aside must not be open, SQLite would remove the journal of its successor.
 Status CalibrationStore::stand_in(const Error& error) {
-  database_.reset();
   auto memory = Database::open(":memory:");
   if (!memory) return memory.error();
   if (auto prepared = prepare_schema(*memory); !prepared) return prepared;

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "api/json/calibration_result_json.hpp"
 #include "server/storage/durable_file.hpp"
 #include "server/storage/saved_pose_rows.hpp"
 #include "server/storage/schema.hpp"
@@ -36,7 +37,7 @@ Status check_structure(Database& database) {
   const auto words = check.next() ? check.text(0) : std::string();
   if (auto status = check.status(StorageError::cannot_read); !status) return status;
   if (words != "ok") return Error{StorageError::damaged, words};
-  for (const char* table : {"calibrations", "results", "activations", "drifts", "backgrounds"}) {
+  for (const char* table : {"calibrations", "results", "activations", "drifts", "backgrounds", "evidence"}) {
     Statement query(database, std::string("SELECT 1 FROM ") + table + " LIMIT 1");
     query.next();
     if (auto status = query.status(StorageError::damaged); !status) return status;
@@ -44,11 +45,18 @@ Status check_structure(Database& database) {
   return Done{};
 }
 
+bool is_readable(const SavedPose& pose) {
+  const auto result = api::parse_calibration_result(pose.result);
+  return result && result->T_base_sensor;
+}
+
 Status check_whole(Database& database, const std::vector<SavedPose>& saved) {
   if (auto prepared = prepare_schema(database); !prepared) return prepared;
   if (auto checked = check_structure(database); !checked) return checked;
   for (const auto& pose : saved)
     if (auto checked = check_against(database, pose); !checked) return checked;
+  for (const auto& pose : select_all_current(database))
+    if (!is_readable(pose)) return Error{StorageError::damaged, "result of " + pose.calibration_id};
   return Done{};
 }
 
@@ -59,8 +67,9 @@ Result<Database> open_checked(const fs::path& file, const std::string& vfs,
   const auto checked = check_whole(*database, salvaged);
   if (checked) return database;
   for (auto& pose : select_all_current(*database))
-    if (std::none_of(salvaged.begin(), salvaged.end(),
-                     [&](const auto& other) { return other.sensor_id == pose.sensor_id; }))
+    if (is_readable(pose) && std::none_of(salvaged.begin(), salvaged.end(), [&](const auto& other) {
+          return other.sensor_id == pose.sensor_id;
+        }))
       salvaged.push_back(std::move(pose));
   return Error{checked.error().code, file.string() + " (" + checked.error().detail + ")"};
 }
