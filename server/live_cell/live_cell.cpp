@@ -59,8 +59,9 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
                                                                  : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
-  if (!stored) return stored.error();
-  if (*stored) restore(**stored, *entries_.at(setup.id)->sensor);
+  if (stored && *stored) restore(**stored, *entries_.at(setup.id)->sensor);
+  if (!stored && log_.on_error)
+    log_.on_error("sensor " + setup.id + " starts without its pose: " + stored.error().message());
   return Done{};
 }
 

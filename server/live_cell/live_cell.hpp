@@ -80,7 +80,7 @@ class LiveCell : public api::CellService {
   LiveRobot& robot_link() { return robot_; }
   RobotMotions& robot_motions() { return motions_; }
 
-  /// Restores the sensor's stored pose. Error: StorageError.
+  /// Restores the sensor's stored pose, where it can be read.
   Status add_sensor(const SensorSetup& setup);
   /// Begins to read frames.
   void start(const std::string& sensor_id, std::unique_ptr<DepthSource> source);

@@ -51,7 +51,9 @@ Result<CalibrationReport> read_row(const Statement& row) {
   }
   if (const auto stored = row.optional_text(10)) {
     auto result = api::parse_calibration_result(*stored);
-    if (!result) return Error{StorageError::damaged, "result of " + report.id};
+    if (!result)
+      return Error{StorageError::cannot_read,
+                   "result of " + report.id + " (" + result.error().message() + ")"};
     report.result = *std::move(result);
   }
   report.current = row.optional_number(11).value_or(0) != 0;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include "api/json/calibration_result_json.hpp"
 #include "server/storage/calibration_store.hpp"
 #include "tests/server/storage/storage_folder.hpp"
 
@@ -15,9 +16,8 @@ constexpr const char* kRowsOfOne =
     "INSERT INTO calibrations (id, sensor_id, created_ms, method, postures, activate, idempotency_key, "
     "fingerprint) VALUES ('old', 'kinect2', 1000, 'full', 3, 1, 'key', '{}'), "
     "('older', 'kinect2', 500, 'paper', 4, 0, NULL, '{}');"
-    "INSERT INTO results VALUES ('old', 2000, 'succeeded', '', 3, "
-    "'{\"verdict\":\"accepted\",\"T_base_sensor\":[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}'), "
-    "('older', 700, 'failed', 'rejected', 4, NULL);"
+    "INSERT INTO results VALUES ('old', 2000, 'succeeded', '', 3, 'RESULT'), ('older', 700, 'failed', "
+    "'rejected', 4, NULL);"
     "INSERT INTO activations (sensor_id, calibration_id, activated_ms) VALUES ('kinect2', 'old', 3000);";
 constexpr const char* kRowsOfTwo =
     "INSERT INTO activations (sensor_id, calibration_id, activated_ms, basis) "
@@ -31,7 +31,12 @@ class OlderSchema : public ::testing::TestWithParam<int> {
   void SetUp() override {
     std::string sql;
     for (int step = 0; step < GetParam(); ++step) sql += kSchemaSteps.at(static_cast<std::size_t>(step));
-    sql += kRowsOfOne;
+    CalibrationResult result;
+    result.verdict = Verdict::accepted;
+    result.T_base_sensor = Pose(Eigen::Translation3d(1, 2, 3));
+    const std::string rows = kRowsOfOne;
+    const auto at = rows.find("RESULT");
+    sql += rows.substr(0, at) + api::calibration_result_json(result) + rows.substr(at + 6);
     if (GetParam() >= 2) sql += kRowsOfTwo;
     if (GetParam() >= 3) sql += kRowsOfThree;
     sql += "PRAGMA user_version = " + std::to_string(GetParam());
@@ -59,7 +64,9 @@ TEST_P(OlderSchema, IsBroughtUpToDateAndKeepsEverything) {
     EXPECT_EQ((*current)->drifted, GetParam() >= 2);
     const auto background = (*store)->background("old");
     ASSERT_EQ(background->has_value(), GetParam() >= 3);
-    if (*background) EXPECT_NEAR((*background)->at(0), 1.2345, 1e-5);
+    if (GetParam() >= 3) {
+      EXPECT_NEAR((*background)->at(0), 1.2345, 1e-5);
+    }
     const auto older = *(*store)->find("older");
     EXPECT_EQ(older->message, "rejected");
     EXPECT_EQ(older->method, Method::paper);
