@@ -41,6 +41,11 @@ std::string file_name(const std::string& sensor_id) {
   return name + ".json";
 }
 
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 SavedPose pose_of(const json::object& object) {
   const auto text = [&](const char* key) { return std::string(object.at(key).as_string()); };
   const auto number = [&](const char* key) { return object.at(key).to_number<std::int64_t>(); };
@@ -99,8 +104,11 @@ fs::path saved_pose_folder(const fs::path& database) {
 }
 
 Status save_pose(const fs::path& folder, const SavedPose& pose) {
+  const auto file = folder / file_name(pose.sensor_id);
+  const auto text = saved_pose_text(pose);
+  if (content_of(file) == text) return Done{};  // also where there is no room to write it anew
   if (auto made = make_folders_durably(folder); !made) return made;
-  return write_durably(folder / file_name(pose.sensor_id), saved_pose_text(pose));
+  return write_durably(file, text);
 }
 
 void forget_pose(const fs::path& folder, const std::string& sensor_id) {
@@ -112,9 +120,7 @@ std::vector<SavedPose> read_saved_poses(const fs::path& folder) {
   std::vector<SavedPose> poses;
   for (const auto& name : names_in(folder)) {
     if (!name.ends_with(".json")) continue;
-    std::ifstream stream(folder / name, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (auto pose = parse_saved_pose(text)) poses.push_back(*std::move(pose));
+    if (auto pose = parse_saved_pose(content_of(folder / name))) poses.push_back(*std::move(pose));
   }
   return poses;
 }

@@ -4,6 +4,7 @@
 """Disks that are full, read-only or damaged: the last good pose is served, everything says what is wrong, and the daemon
 goes on by itself. Mounts small disks of its own where it may (as root, in a namespace of its own)."""
 
+import contextlib
 import ctypes
 import os
 import subprocess
@@ -78,14 +79,10 @@ class StorageCase(CellTest):
 
 
 class Disks(StorageCase):
-    def fill(self) -> Path:
-        filler = self.disk / "filler"
-        with filler.open("wb") as stream:
-            try:
-                while True:
-                    stream.write(b"x" * 4096)
-                    stream.flush()
-            except OSError:
+    def fill(self, name: str = "filler") -> Path:
+        filler = self.disk / name
+        with filler.open("wb", buffering=0) as stream, contextlib.suppress(OSError):
+            while stream.write(b"x" * 4096):
                 pass
         return filler
 
@@ -99,10 +96,12 @@ class Disks(StorageCase):
         self.expect_pose_of(daemon, first)
 
         daemon.stop()
+        self.fill("what its journal took")
         daemon = self.start("storage.captures_max_mb=0")  # a start with no room at all
         self.wait_storage(daemon, "full")
         self.expect_pose_of(daemon, first)
         self.expect_refused(daemon, "full")
+        self.assertTrue((self.disk / f"calibrd.db.last/{SENSOR}.json").exists(), "nothing replaces it")
 
         filler.unlink()
         self.wait_storage(daemon, "good")
