@@ -19,7 +19,8 @@ from pathlib import Path
 
 from cell import SENSOR, CellTest, Daemon
 
-LONGEST_LIFE_S = 4.0
+LONGEST_LIFE_S = 8.0
+NEAR_ITS_END_S = 1.0  # one half of the kills come so soon after a calibration is computed: while it is stored, or just after
 ENDED = ("succeeded", "failed", "cancelled")
 
 
@@ -35,28 +36,34 @@ class Killed:
         self.ended: dict[str, str] = {}       # id: status, as reported
         self.current, self.under_way = "", ""  # by the last report; what may have become so since
         self.kills = self.during_a_calibration = 0
+        self.kill_at, self.waits_for_end = 0.0, False
 
     def live(self) -> None:
         """One life: calibrations one after the other, until it is killed."""
         daemon = self.test.serve(self.simulator, "drift.healing=off", "storage.captures_max_mb=20")
         daemon.wait_alive()
         self.check(daemon)
-        until = time.monotonic() + self.random.uniform(0.05, LONGEST_LIFE_S)
-        with contextlib.suppress(AssertionError, OSError, http.client.HTTPException):
-            while time.monotonic() < until:
-                self.calibrate(daemon, until)
+        self.kill_at = time.monotonic() + self.random.uniform(0.05, LONGEST_LIFE_S)
+        self.waits_for_end = self.random.random() < 0.5
+        if self.waits_for_end:
+            self.kill_at += 60
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            while time.monotonic() < self.kill_at:
+                self.calibrate(daemon)
         daemon.process.kill()
         daemon.process.wait()
         self.kills += 1
         self.during_a_calibration += bool(self.under_way)
         self.test.programs.remove(daemon)
 
-    def calibrate(self, daemon: Daemon, until: float) -> None:
-        location = daemon.start_calibration(postures=2, guess=self.start_pose)
+    def calibrate(self, daemon: Daemon) -> None:
+        location = daemon.start_calibration(postures=1, guess=self.start_pose)
         self.under_way = location.rsplit("/", 1)[1]
         self.asked.add(self.under_way)
-        while time.monotonic() < until:
+        while time.monotonic() < self.kill_at:
             job = daemon.json(location)
+            if job["status"] == "running" and self.waits_for_end:
+                self.kill_at, self.waits_for_end = time.monotonic() + self.random.uniform(0, NEAR_ITS_END_S), False
             if job["status"] in ENDED:
                 self.ended[job["id"]] = job["status"]
                 if job["current"]:
@@ -114,6 +121,7 @@ class Kills(CellTest):
     def test_what_was_reported_as_stored_is_there_after_every_kill(self):
         killed = run(self, self.wanted, self.seed)
         self.assertGreater(killed.during_a_calibration, 0)
+        self.assertIn("succeeded", killed.ended.values())
 
 
 if __name__ == "__main__":
