@@ -47,10 +47,11 @@ int only_check(const Config& config) {
 }
 
 /// Starts in a thread of its own, so that the signal is heard while a large robot model is being read.
-int serve(const Config& config) {
+int serve(const LoadedConfig& loaded) {
+  const Config& config = loaded.config;
   const EndSignal end;
-  auto starting = std::async(std::launch::async, [&config, main = pthread_self()] {
-    auto daemon = Daemon::start(config, CALIBRD_VERSION);
+  auto starting = std::async(std::launch::async, [&, main = pthread_self()] {
+    auto daemon = Daemon::start(config, CALIBRD_VERSION, config_as_toml(loaded));
     if (daemon)
       spdlog::info("calibrd {} listens on {}:{}", CALIBRD_VERSION, config.server.address,
                    (*daemon)->http_port());
@@ -86,7 +87,7 @@ int run_serve(const ServeOptions& options) {
     return 0;
   }
   start_logging(loaded->config.log);
-  return options.check_config ? only_check(loaded->config) : serve(loaded->config);
+  return options.check_config ? only_check(loaded->config) : serve(*loaded);
 }
 
 }  // namespace calibrd

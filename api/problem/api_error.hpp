@@ -16,6 +16,7 @@ enum class ApiError {
   method_not_allowed,
   no_such_sensor,
   no_such_calibration,
+  capture_not_kept,
   bad_query,
   unknown_format,
   wrong_content_type,

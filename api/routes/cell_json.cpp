@@ -105,6 +105,23 @@ json::array links_json(const RobotReport& robot) {
   return links;
 }
 
+json::value evidence_json(const CalibrationReport& calibration) {
+  const auto& evidence = calibration.evidence;
+  if (!evidence) return nullptr;
+  json::array views;
+  for (const auto& view : evidence->views)
+    views.push_back(
+        {{"stamp_s", view.stamp_s}, {"joint_positions_rad", json::value_from(view.joint_positions_rad)}});
+  json::value capture = nullptr;
+  if (const auto bytes = calibration.capture_bytes)
+    capture = {{"path", "/api/v1/calibrations/" + calibration.id + "/capture"}, {"bytes", *bytes}};
+  return {{"software_version", evidence->software_version},
+          {"configuration", evidence->configuration},
+          {"joint_names", json::value_from(evidence->joint_names)},
+          {"views", std::move(views)},
+          {"capture", std::move(capture)}};
+}
+
 }  // namespace
 
 json::object sensor_json(const SensorReport& sensor) {
@@ -158,8 +175,9 @@ json::object calibration_json(const CalibrationReport& calibration, bool with_re
       {"postures", calibration.postures_wanted},
       {"postures_seen", calibration.postures_seen},
       {"activate", calibration.activate}};
-  if (with_result)
-    body["result"] = result ? json::value(calibration_result_object(*result)) : json::value(nullptr);
+  if (!with_result) return body;
+  body["result"] = result ? json::value(calibration_result_object(*result)) : json::value(nullptr);
+  body["evidence"] = evidence_json(calibration);
   return body;
 }
 

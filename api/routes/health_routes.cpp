@@ -31,6 +31,9 @@ Response answer_ready(const Request& request, CellService& service) {
     ready = ready && streaming;
     dependencies.push_back(dependency_json("sensor " + sensor.id, streaming, sensor.health, sensor.reason));
   }
+  const auto& storage = cell.storage;
+  ready = ready && storage.ready;
+  dependencies.push_back(dependency_json("storage", storage.ready, storage.state, storage.reason));
   json::object body{{"ready", ready}};
   if (request.query.contains("verbose")) body["dependencies"] = std::move(dependencies);
   return json_response(ready ? 200 : 503, body);

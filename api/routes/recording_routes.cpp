@@ -29,17 +29,19 @@ Result<CaptureRequest> read_capture_request(const Request& request, const std::s
                         note->value_or("")};
 }
 
-Response answer_capture(const Request& request, const PathValues& values, CellService& service) {
-  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
-  const auto wanted = read_capture_request(request, values[0]);
-  if (!wanted) return problem(wanted.error());
-  auto archive = service.record_capture(*wanted);
+Response archive_response(Result<CaptureArchive> archive) {
   if (!archive) return problem(archive.error());
   return {200,
           {{"Content-Type", "application/x-tar"},
            {"Content-Disposition", "attachment; filename=\"" + archive->file_name + "\""},
            {"Cache-Control", "no-store"}},
           std::move(archive->tar)};
+}
+
+Response answer_capture(const Request& request, const PathValues& values, CellService& service) {
+  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+  const auto wanted = read_capture_request(request, values[0]);
+  return wanted ? archive_response(service.record_capture(*wanted)) : problem(wanted.error());
 }
 
 /// What a cloud was made from, as name and value: comments of the file, and headers.
@@ -86,6 +88,11 @@ void add_recording_routes(Router& router, CellService& service) {
   router.add("POST", "/api/v1/sensors/{id}/captures", Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                return answer_capture(request, values, service);
+             });
+  router.add("GET", "/api/v1/calibrations/{id}/capture", Cost::slow,
+             [&service](const Request& request, const PathValues& values) {
+               if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+               return archive_response(service.calibration_capture(values[0]));
              });
   constexpr std::array kKinds{std::pair{"measured", CloudKind::measured},
                               std::pair{"virtual", CloudKind::virtual_},

@@ -38,6 +38,9 @@ class CellService {
   virtual Result<CalibrationReport> activate_calibration(std::string_view id) = 0;
   virtual Result<HistoryPage> history(const HistoryQuery& query) const = 0;
 
+  /// The views of a calibration, as a capture/1 folder in a tar archive, while they are kept.
+  virtual Result<CaptureArchive> calibration_capture(std::string_view id) const = 0;
+
   /// Where to move the robot next so that a calibration knows the sensor's pose best.
   virtual Result<PostureSuggestion> next_posture(const NextPostureRequest& request) const = 0;
 

@@ -152,11 +152,22 @@ struct RobotReport {
   std::vector<LinkPlacement> links;            ///< at `joints`; empty without them
 };
 
+/// Whether calibrations can be stored.
+struct StorageReport {
+  bool ready = true;
+  /// "good", "recovered" (a damaged store was put aside), "unsaved" (its second copy of a pose is behind),
+  /// "full", "read_only", "damaged", "failing"
+  std::string state = "good";
+  std::string reason;  ///< what is wrong, and what to do; empty while it is good
+  bool operator==(const StorageReport&) const = default;
+};
+
 struct CellReport {
   std::string version;
   Seconds uptime{0};
   RobotReport robot;
   std::vector<SensorReport> sensors;
+  StorageReport storage;
 };
 
 enum class JobStatus { queued, collecting, running, succeeded, failed, cancelled };
@@ -175,6 +186,18 @@ struct CalibrationRequest {
   bool after_move = false;  ///< the sensor has moved: start from where its background says it is
 };
 
+/// What a calibration was made from and with.
+struct Evidence {
+  struct View {
+    double stamp_s = 0;  ///< monotonic clock of the daemon
+    std::vector<double> joint_positions_rad;
+  };
+  std::string software_version;
+  std::string configuration;  ///< in effect, as TOML
+  std::vector<std::string> joint_names;
+  std::vector<View> views;
+};
+
 /// A calibration, under way or ended. It succeeded exactly when its verdict is accepted.
 struct CalibrationReport {
   std::string id;
@@ -190,6 +213,9 @@ struct CalibrationReport {
   bool activate = true;
   bool current = false;                     ///< its pose is the one being served
   std::optional<CalibrationResult> result;  ///< of every calibration that came to a verdict
+  // Only where one calibration is asked for.
+  std::optional<Evidence> evidence = {};            ///< of one that has ended
+  std::optional<std::uint64_t> capture_bytes = {};  ///< size of its views, where they are kept
 };
 
 struct HistoryQuery {

@@ -122,6 +122,8 @@ struct MotionConfig {
 
 struct StorageConfig {
   std::filesystem::path path = "/var/lib/calibrd/calibrd.db";
+  Duration captures_max_age = std::chrono::hours(24 * 90);
+  int captures_max_mb = 2000;
 };
 
 struct LogConfig {

@@ -222,6 +222,10 @@ void declare_rest(std::vector<Setting>& table) {
                                          [](Config& c, const Names&) -> StorageConfig& { return c.storage; });
   storage("path", &StorageConfig::path, path(), "",
           "SQLite file with every calibration ever made. Its folder is made when absent.");
+  storage("captures_max_age", &StorageConfig::captures_max_age, duration(0ms, 24h * 365 * 10), "",
+          "The views of a calibration are kept in captures/ beside it for this long. 0s: not at all.");
+  storage("captures_max_mb", &StorageConfig::captures_max_mb, integer(0, 10'000'000), "MB",
+          "All of them take no more; the oldest go first. 0: none are kept.");
   SectionDeclarer<LogConfig> log(table, {"log"}, [](Config& c, const Names&) -> LogConfig& { return c.log; });
   log("level", &LogConfig::level, one_of({"trace", "debug", "info", "warn", "error"}), "",
       "Least severe message that is logged (to stderr).");

@@ -15,6 +15,7 @@
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
 #include "server/storage/calibration_store.hpp"
+#include "server/storage/store_watch.hpp"
 
 namespace calibrd {
 namespace {
@@ -66,6 +67,8 @@ Status check_config(const Config& config) {
 /// In the order they are made; they end in the opposite one.
 struct Daemon::Parts {
   std::unique_ptr<CalibrationStore> store;
+  std::shared_ptr<CaptureFolder> captures;
+  std::unique_ptr<StoreWatch> store_watch;
   std::unique_ptr<const RobotModel> model;
   std::unique_ptr<const VirtualCell> virtual_cell;
   std::unique_ptr<MotionLink> motion;  // only where the robot may be moved
@@ -75,6 +78,18 @@ struct Daemon::Parts {
   api::Router router;
   std::unique_ptr<api::HttpServer> http;
 
+  Status open_store(const Config& config) {
+    auto opened = CalibrationStore::open(config.storage.path);
+    if (!opened) return opened.error();
+    store = *std::move(opened);
+    captures = std::make_shared<CaptureFolder>(
+        capture_folder_of(config.storage.path),
+        CaptureLimits{config.storage.captures_max_age,
+                      static_cast<std::uint64_t>(config.storage.captures_max_mb) * 1'000'000});
+    store_watch = std::make_unique<StoreWatch>(*store, log_storage, [this] { captures->remove_old(); });
+    return Done{};
+  }
+
   Status make_model(const Config& config) {
     auto loaded = load_model(config.robot);
     if (!loaded) return loaded.error();
@@ -83,7 +98,7 @@ struct Daemon::Parts {
     return Done{};
   }
 
-  Status make_cell(const Config& config, const std::string& version) {
+  Status make_cell(const Config& config, const std::string& version, const std::string& configuration) {
     auto mapping = make_mapping(config, *model);
     if (!mapping) return mapping.error();
     if (auto status = check_motion(config, *model, *mapping); !status) return status;
@@ -91,6 +106,8 @@ struct Daemon::Parts {
     if (!frame) return frame.error();
     auto settings = cell_settings(config, version);
     settings.controller_frame = *std::move(frame);
+    settings.configuration = configuration;
+    settings.captures = captures;
     cell = std::make_unique<LiveCell>(std::move(settings), *model, *virtual_cell, *std::move(mapping), *store,
                                       core_estimator(*virtual_cell, drift_settings(config.drift)),
                                       CellLog{log_calibration, log_pose, log_error, log_motion});
@@ -134,15 +151,14 @@ struct Daemon::Parts {
   }
 };
 
-Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::string& version) {
+Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::string& version,
+                                              const std::string& configuration) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::make_unique<Parts>()));
   auto& parts = *daemon->parts_;
   if (auto status = check_sensors(config); !status) return status.error();
   if (auto status = parts.make_model(config); !status) return status.error();
-  auto store = CalibrationStore::open(config.storage.path);
-  if (!store) return store.error();
-  parts.store = *std::move(store);
-  if (auto status = parts.make_cell(config, version); !status) return status.error();
+  if (auto status = parts.open_store(config); !status) return status.error();
+  if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
   if (auto status = parts.make_http(config); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();

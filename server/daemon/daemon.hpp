@@ -18,8 +18,10 @@ Status check_config(const Config& config);
 class Daemon {
  public:
   /// Runs when it returns. Whether robot and sensors are there shows in the API: they may come and go at any
-  /// time. The error names the file, key or port at fault.
-  static Result<std::unique_ptr<Daemon>> start(const Config& config, const std::string& version);
+  /// time. `configuration`: the same as text, which is kept with every calibration. The error names the file,
+  /// key or port at fault.
+  static Result<std::unique_ptr<Daemon>> start(const Config& config, const std::string& version,
+                                               const std::string& configuration);
   ~Daemon();
 
   /// Ends everything in good order.

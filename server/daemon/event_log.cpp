@@ -36,6 +36,14 @@ void log_motion(const std::string& line, bool is_well) {
   spdlog::log(is_well ? spdlog::level::info : spdlog::level::warn, "{}", line);
 }
 
+void log_storage(const api::StorageReport& storage) {
+  if (storage.state == "good")
+    spdlog::info("storage: good");
+  else
+    spdlog::log(storage.ready ? spdlog::level::warn : spdlog::level::err, "storage: {}: {}", storage.state,
+                storage.reason);
+}
+
 void log_pose(const api::PoseReport& pose) {
   if (pose.valid)
     spdlog::info("sensor {}: the pose of calibration {} is valid", pose.sensor_id,

@@ -17,6 +17,7 @@ void log_calibration(const api::CalibrationReport& calibration);
 void log_error(const std::string& message);
 /// What is done to the robot: every command.
 void log_motion(const std::string& line, bool is_well);
+void log_storage(const api::StorageReport& storage);
 void log_pose(const api::PoseReport& pose);
 void log_access(const api::AccessRecord& record);
 

@@ -25,13 +25,14 @@ std::optional<Pose> start_of(const api::CalibrationRequest& request, const std::
 }  // namespace
 
 CalibrationJobs::CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish,
-                                 Log log, JobSettings settings, Review review)
+                                 Log log, JobSettings settings, Review review, EvidenceKeeper evidence)
     : store_(store),
       calibrate_(std::move(calibrate)),
       publish_(std::move(publish)),
       log_(std::move(log)),
       settings_(settings),
       review_(std::move(review)),
+      evidence_(std::move(evidence)),
       thread_([this] { run(); }) {}
 
 CalibrationJobs::~CalibrationJobs() {
@@ -106,6 +107,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->report.method = request.method;
   job->report.postures_wanted = collector.postures;
   job->report.activate = request.activate;
+  if (evidence_.describe) job->report.evidence = evidence_.describe({});
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;

@@ -42,6 +42,14 @@ struct Surroundings {
   bool has_moved = false;  ///< the newest frame does not show it where they did: the sensor may have moved
 };
 
+/// What is kept of a calibration beside its result.
+struct EvidenceKeeper {
+  /// What it is made from and with; without views before there are any.
+  std::function<api::Evidence(std::span<const View>)> describe;
+  /// Keeps the views themselves; called once the end is stored and published.
+  std::function<void(const api::CalibrationReport&, LiveSensor&, std::span<const View>)> keep_views;
+};
+
 /// Runs calibrations: collects postures of any number of sensors at a time, computes one at a time on a
 /// thread of its own, stores every outcome, and makes an accepted one the current pose. Safe to call from any
 /// thread. Errors: api::ApiError.
@@ -61,7 +69,7 @@ class CalibrationJobs {
   /// `store` must outlive it. `log` hears of every calibration that has ended, and of one that is still
   /// collecting when it has lost postures.
   CalibrationJobs(CalibrationStore& store, CalibrateFunction calibrate, Publish publish, Log log,
-                  JobSettings settings, Review review = {});
+                  JobSettings settings, Review review = {}, EvidenceKeeper evidence = {});
   ~CalibrationJobs();
 
   /// `sensor` must outlive the jobs. `guess`: where the request leaves the start to the cell. Without any, at
@@ -107,6 +115,7 @@ class CalibrationJobs {
   const Log log_;
   const JobSettings settings_;
   const Review review_;
+  const EvidenceKeeper evidence_;
 
   std::mutex starting_;  // one start() at a time: two requests with one key start one calibration
   std::mt19937 random_{std::random_device{}()};  // guarded by starting_

@@ -117,9 +117,11 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
 void CalibrationJobs::compute(const JobPointer& job) {
   const auto views = job->task->take_views();
   const auto seen_at = time_of_last(views);
+  auto made_from = evidence_.describe ? std::optional(evidence_.describe(views)) : std::nullopt;
   {
     const std::lock_guard lock(mutex_);
     job->seen_at = seen_at;
+    job->report.evidence = std::move(made_from);
   }
   auto result = calibrate(job, views);
   {
@@ -138,6 +140,7 @@ void CalibrationJobs::compute(const JobPointer& job) {
   auto evidence = evidence_of(result, job->report.method, views);
   end_computed(job, std::move(result));
   if (evidence) job->sensor->set_evidence(*std::move(evidence), seen_at);
+  if (evidence_.keep_views) evidence_.keep_views(job->report, *job->sensor, views);
 }
 
 CalibrationResult CalibrationJobs::calibrate(const JobPointer& job, std::span<const View> views) {
@@ -194,14 +197,21 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   jobs_.erase(report.id);
 }
 
-/// Stores the end, and that it is current now if it is to be. False: it could not be stored.
+/// Stores the end, and that it is current now if it is to be. False: it could not be stored; a pose that is
+/// not on the disk is none.
 bool CalibrationJobs::store_end(CalibrationReport& report, const std::string& basis) {
-  auto stored = store_.finish(report);
   const bool activate = report.status == JobStatus::succeeded && report.activate;
-  if (stored && activate) stored = store_.activate(report, basis);
+  const auto stored = store_.finish(report, activate ? std::optional(basis) : std::nullopt);
   report.current = stored && activate;
-  if (!stored) report.message = "The result could not be stored: " + stored.error().message();
-  return stored.has_value();
+  if (stored) return true;
+  if (report.status == JobStatus::succeeded) {
+    report.status = JobStatus::failed;
+    report.message = "It would have been accepted, and the pose before it stays.";
+    report.result.reset();
+  }
+  report.message = "The result could not be stored: " + stored.error().message() + ". " + report.message;
+  store_.owe_end(report);
+  return false;
 }
 
 }  // namespace calibrd

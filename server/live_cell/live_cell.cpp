@@ -32,7 +32,8 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
             healer_.on_calibration(calibration, seen_at);
           },
           settings_.jobs,
-          [this](auto& sensor, auto views, auto& result) { return review(sensor, views, result); }),
+          [this](auto& sensor, auto views, auto& result) { return review(sensor, views, result); },
+          evidence_keeper()),
       healer_(
           settings_.healing, [this](const auto& request) { return start_calibration(request); },
           [this](const auto& calibration_id) { (void)jobs_.cancel(calibration_id); },
@@ -59,8 +60,9 @@ Status LiveCell::add_sensor(const SensorSetup& setup) {
                                                                  : nullptr);
   entries_[setup.id] = std::move(entry);
   const auto stored = store_.current(setup.id);
-  if (!stored) return stored.error();
-  if (*stored) restore(**stored, *entries_.at(setup.id)->sensor);
+  if (stored && *stored) restore(**stored, *entries_.at(setup.id)->sensor);
+  if (!stored && log_.on_error)
+    log_.on_error("sensor " + setup.id + " starts without its pose: " + stored.error().message());
   return Done{};
 }
 
@@ -82,13 +84,13 @@ void LiveCell::hear_of_pose(const api::PoseReport& pose) {
   healer_.on_pose(pose);
 }
 
-/// Where this cannot be stored, the pose is drifted all the same, until a restart.
+/// Where this cannot be stored, the pose is drifted all the same, and the store tries again until a restart.
 void LiveCell::store_drift(const std::string& sensor_id, const std::string& calibration_id) {
   const auto stored = store_.add_drift(calibration_id);
   if (stored || !log_.on_error) return;
-  log_.on_error(
-      "sensor " + sensor_id + ": that the pose of calibration " + calibration_id +
-      " has drifted could not be stored, and will not be known after a restart: " + stored.error().message());
+  log_.on_error("sensor " + sensor_id + ": that the pose of calibration " + calibration_id +
+                " has drifted could not be stored yet, and would not be known after a restart: " +
+                stored.error().message());
 }
 
 std::unique_ptr<DriftMonitor> LiveCell::make_monitor(const SensorSetup& setup) {
@@ -172,7 +174,7 @@ api::SensorReport LiveCell::report_of(const Entry& entry) const {
 }
 
 api::CellReport LiveCell::cell() const {
-  return {settings_.version, Clock::now() - began_, robot(), sensors()};
+  return {settings_.version, Clock::now() - began_, robot(), sensors(), store_.report()};
 }
 
 std::vector<api::SensorReport> LiveCell::sensors() const {
@@ -211,10 +213,6 @@ Result<api::CalibrationReport> LiveCell::start_calibration(const api::Calibratio
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
   return jobs_.start(request, *(*entry)->sensor, guess_for(**entry, request));
-}
-
-Result<api::CalibrationReport> LiveCell::calibration(std::string_view id) const {
-  return jobs_.find(std::string(id));
 }
 
 Result<api::CalibrationReport> LiveCell::cancel_calibration(std::string_view id) {

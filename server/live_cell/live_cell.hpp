@@ -19,6 +19,7 @@
 #include "server/live_cell/robot_motions.hpp"
 #include "server/live_cell/sensor_comparison.hpp"
 #include "server/storage/calibration_store.hpp"
+#include "server/storage/capture_folder.hpp"
 
 namespace calibrd {
 
@@ -44,6 +45,8 @@ struct LiveCellSettings {
   JobSettings jobs;
   HealerSettings healing;
   RobotMotionSettings motion;
+  std::string configuration = {};                     ///< in effect, as TOML: kept with every calibration
+  std::shared_ptr<CaptureFolder> captures = nullptr;  ///< for the views of calibrations; null: none are kept
 };
 
 /// Who hears of what happens in the cell; called on the threads it happens on.
@@ -77,7 +80,7 @@ class LiveCell : public api::CellService {
   LiveRobot& robot_link() { return robot_; }
   RobotMotions& robot_motions() { return motions_; }
 
-  /// Restores the sensor's stored pose. Error: StorageError.
+  /// Restores the sensor's stored pose, where it can be read.
   Status add_sensor(const SensorSetup& setup);
   /// Begins to read frames.
   void start(const std::string& sensor_id, std::unique_ptr<DepthSource> source);
@@ -97,6 +100,7 @@ class LiveCell : public api::CellService {
   Result<api::CalibrationReport> activate_calibration(std::string_view id) override;
   Result<api::HistoryPage> history(const api::HistoryQuery& query) const override;
   Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
+  Result<api::CaptureArchive> calibration_capture(std::string_view id) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
   Result<api::MotionReport> start_motion(const api::MotionRequest& request) override {
@@ -132,6 +136,11 @@ class LiveCell : public api::CellService {
   std::shared_ptr<const BackgroundMap> stored_background(const api::CalibrationReport& calibration);
   Surroundings review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
+  EvidenceKeeper evidence_keeper();
+  void keep_views(const api::CalibrationReport& calibration, const LiveSensor& sensor,
+                  std::span<const View> views) const;
+  Result<api::CaptureArchive> archive(const LiveSensor& sensor, std::span<const View> views,
+                                      const std::string& note) const;
   api::SensorReport report_of(const Entry& entry) const;
 
   const LiveCellSettings settings_;

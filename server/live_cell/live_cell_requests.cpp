@@ -76,17 +76,9 @@ Result<std::vector<View>> LiveCell::collect(Entry& entry, const api::CaptureRequ
 Result<api::CaptureArchive> LiveCell::record_capture(const api::CaptureRequest& request) {
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
-  auto views = collect(**entry, request);
+  const auto views = collect(**entry, request);
   if (!views) return views.error();
-  Capture capture;
-  capture.note = request.note;
-  capture.urdf = settings_.urdf;
-  capture.base_link = settings_.base_link;
-  capture.joint_names = robot_.model().position_names();
-  capture.sensor_id = request.sensor_id;
-  capture.camera = (*entry)->setup.camera;
-  capture.views = *std::move(views);
-  return archive_capture(capture, settings_.search_paths);
+  return archive(*(*entry)->sensor, *views, request.note);
 }
 
 Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {

@@ -66,8 +66,20 @@ CREATE TRIGGER backgrounds_stay BEFORE UPDATE ON backgrounds BEGIN SELECT RAISE(
 CREATE TRIGGER backgrounds_remain BEFORE DELETE ON backgrounds BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
 )sql";
 
+/// What a calibration was made from and with: see api::Evidence. `views`: JSON.
+inline constexpr const char* kEvidence = R"sql(
+CREATE TABLE evidence (
+  calibration_id TEXT PRIMARY KEY REFERENCES calibrations (id),
+  software_version TEXT NOT NULL,
+  configuration TEXT NOT NULL,
+  views TEXT NOT NULL
+);
+CREATE TRIGGER evidence_stays BEFORE UPDATE ON evidence BEGIN SELECT RAISE(ABORT, 'evidence is kept'); END;
+CREATE TRIGGER evidence_remains BEFORE DELETE ON evidence BEGIN SELECT RAISE(ABORT, 'evidence is kept'); END;
+)sql";
+
 /// Steps from an empty file to today's schema. The file's user_version is how many it has taken; a change is
 /// one more step, and the steps before it stay as they are.
-inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds};
+inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds, kEvidence};
 
 }  // namespace calibrd

@@ -18,16 +18,20 @@ namespace calibrd {
 /// An SQLite connection that syncs every commit to the disk. One thread at a time.
 class Database {
  public:
-  /// Errors: StorageError::cannot_open, not_a_store.
-  static Result<Database> open(const std::filesystem::path& file);
+  /// `vfs`: name of the SQLite VFS to go through; empty: the system's. Errors: as run(), with the file's
+  /// name.
+  static Result<Database> open(const std::filesystem::path& file, const std::string& vfs = {});
 
-  /// Runs statements that give no rows. Error: `why`, with SQLite's words.
+  /// Runs statements that give no rows. Errors: see failure().
   Status run(const std::string& sql, StorageError why);
 
-  std::string words() const;  ///< what SQLite last complained about
+  /// What SQLite last complained about, in its words: full, read_only, damaged, not_a_store or out_of_memory
+  /// where it says so, else `why`.
+  Error failure(StorageError why) const;
 
  private:
   friend class Statement;
+  friend class Transaction;
   struct Close {
     void operator()(sqlite3* connection) const;
   };
@@ -52,7 +56,7 @@ class Statement {
   std::optional<std::int64_t> optional_number(int column) const;
   std::int64_t number(int column) const;
 
-  /// Done, or `why` with SQLite's words.
+  /// Done, or the first failure: see Database::failure().
   Status status(StorageError why) const;
 
  private:
@@ -61,7 +65,22 @@ class Statement {
   Database& database_;
   sqlite3_stmt* statement_ = nullptr;
   int bound_ = 0;
-  std::optional<std::string> failure_;
+  mutable std::optional<Error> failure_;  // reading a column can fail, too
+};
+
+/// What is written between its making and commit() is stored as a whole, or not at all.
+class Transaction {
+ public:
+  explicit Transaction(Database& database);
+  Transaction(const Transaction&) = delete;
+  ~Transaction();  ///< undoes what was not committed
+
+  /// Done: it has reached the disk. Errors: see Database::failure().
+  Status commit();
+
+ private:
+  Database& database_;
+  Status begun_;
 };
 
 }  // namespace calibrd

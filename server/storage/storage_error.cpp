@@ -15,14 +15,23 @@ const char* text(StorageError code) {
       return "another calibrd is running on this calibration store; end that one, or set another "
              "storage.path for this one";
     case StorageError::not_a_store:
-      return "not a calibration store, or a damaged one; move the file away and restore a backup, or start "
-             "with none";
+      return "not a calibration store; move the file away, or set another storage.path";
     case StorageError::newer_schema:
       return "the store was written by a newer calibrd; run that version, or set another storage.path";
     case StorageError::cannot_read:
       return "the calibration store cannot be read; check the disk";
     case StorageError::cannot_write:
       return "the calibration store cannot be written; check free space and permissions of storage.path";
+    case StorageError::full:
+      return "the disk of the calibration store is full; make room on it, calibrd goes on by itself";
+    case StorageError::read_only:
+      return "the disk of the calibration store is read-only; make it writable again (a disk that has failed "
+             "is often made read-only: look at the system's log)";
+    case StorageError::damaged:
+      return "the calibration store is damaged; check the disk, restore a backup or go on with what was "
+             "saved";
+    case StorageError::out_of_memory:
+      return "the calibration store ran out of memory; give the daemon more";
   }
   return "unknown storage error";
 }

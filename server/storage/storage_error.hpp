@@ -6,7 +6,18 @@
 namespace calibrd {
 
 /// Why the calibration store cannot be used. Error::detail names the file and what SQLite said.
-enum class StorageError { cannot_open = 1, in_use, not_a_store, newer_schema, cannot_read, cannot_write };
+enum class StorageError {
+  cannot_open = 1,
+  in_use,
+  not_a_store,
+  newer_schema,
+  cannot_read,
+  cannot_write,
+  full,
+  read_only,
+  damaged,
+  out_of_memory,
+};
 
 const std::error_category& storage_category();
 std::error_code make_error_code(StorageError code);

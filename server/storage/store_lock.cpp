@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "server/storage/storage_error.hpp"
+#include "server/storage/durable_file.hpp"
 
 namespace calibrd {
 
@@ -20,9 +20,7 @@ Result<StoreLock> StoreLock::take(const std::filesystem::path& database) {
   file += ".lock";
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   const int opened = errno;
-  if (descriptor < 0)
-    return Error{StorageError::cannot_open,
-                 file.string() + " (" + std::generic_category().message(opened) + ")"};
+  if (descriptor < 0) return file_error(opened, file, StorageError::cannot_open);
   StoreLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return Error{StorageError::in_use, database.string()};
   return lock;

@@ -15,6 +15,8 @@ class FakeCell : public CellService {
   PoseReport pose_report;
   RobotReport robot_report;
   DriftReport drift_report;
+  StorageReport storage_report;
+  std::string capture_of_calibration;
   SensorReport sensor_report;
   Cloud cloud_report;
   std::function<Result<CalibrationReport>(const CalibrationRequest&)> on_start;
@@ -66,7 +68,9 @@ class FakeCell : public CellService {
     pose_report.valid = valid;
   }
 
-  CellReport cell() const override { return {"0", Seconds(1), robot_report, {sensor_report}}; }
+  CellReport cell() const override {
+    return {"0", Seconds(1), robot_report, {sensor_report}, storage_report};
+  }
   std::vector<SensorReport> sensors() const override { return {sensor_report}; }
   Result<SensorReport> sensor(std::string_view id) const override { return of_sensor(id, sensor_report); }
   Result<DriftReport> drift(std::string_view id) const override { return of_sensor(id, drift_report); }
@@ -87,6 +91,11 @@ class FakeCell : public CellService {
   Result<CalibrationReport> activate_calibration(std::string_view id) override {
     activated = id;
     return of_calibration(id);
+  }
+  Result<CaptureArchive> calibration_capture(std::string_view id) const override {
+    if (const auto found = of_calibration(id); !found) return found.error();
+    if (capture_of_calibration.empty()) return fail(ApiError::capture_not_kept, std::string(id));
+    return CaptureArchive{std::string(id) + ".tar", capture_of_calibration};
   }
   Result<HistoryPage> history(const HistoryQuery& query) const override {
     last_history = query;

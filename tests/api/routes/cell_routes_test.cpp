@@ -60,6 +60,16 @@ TEST_F(CellRoutes, LostSensorIsNotReadyButAlive) {
   EXPECT_EQ(get("/livez").status, 200);
 }
 
+TEST_F(CellRoutes, StoreThatCannotBeWrittenIsNotReadyAndSaysWhy) {
+  cell_.storage_report = {false, "full", "make room"};
+  EXPECT_EQ(get("/readyz?verbose").status, 503);
+  EXPECT_EQ(body().at("dependencies").at(2).at("name"), "storage");
+  EXPECT_EQ(body().at("dependencies").at(2).at("state"), "full");
+  EXPECT_EQ(body().at("dependencies").at(2).at("reason"), "make room");
+  cell_.storage_report = {true, "recovered", "look at it"};
+  EXPECT_EQ(get("/readyz?verbose").status, 200);
+}
+
 TEST_F(CellRoutes, CaptureIsATarDownload) {
   CaptureRequest wanted;
   cell_.on_capture = [&](const CaptureRequest& request) -> Result<CaptureArchive> {

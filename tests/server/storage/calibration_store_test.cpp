@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "server/storage/background_text.hpp"
-#include "server/storage/schema.hpp"
 
 namespace calibrd {
 namespace {
@@ -137,19 +136,21 @@ TEST(BackgroundText, DamageIsNoBackground) {
     EXPECT_FALSE(parse_background(damaged)) << damaged;
 }
 
-TEST_F(Store, FileOfTheFirstSchemaIsBroughtUpToDate) {
-  store_.reset();
-  std::filesystem::remove(file());
-  run_raw(std::string(kFirstSchema) +
-          "INSERT INTO calibrations (id, sensor_id, created_ms, method, postures, activate, fingerprint) "
-          "VALUES ('old', 'kinect2', 0, 'full', 3, 1, '{}');"
-          "INSERT INTO activations (sensor_id, calibration_id, activated_ms) VALUES ('kinect2', 'old', 0);"
-          "PRAGMA user_version = 1");
+TEST_F(Store, EvidenceIsKeptWithTheEnd) {
+  auto report = add("c1");
+  report.evidence =
+      api::Evidence{"0.1.0", "[server]\nport = 1\n", {"s", "l"}, {{12.5, {0.1, -2}}, {13, {0.2, 3}}}};
+  finish(report);
   open();
-  const auto current = store_->current("kinect2");
-  ASSERT_TRUE(current && *current);
-  EXPECT_EQ((*current)->calibration.id, "old");
-  EXPECT_EQ((*current)->basis, "");
+  const auto evidence = (*store_->find("c1"))->evidence;
+  ASSERT_TRUE(evidence);
+  EXPECT_EQ(evidence->software_version, "0.1.0");
+  EXPECT_EQ(evidence->configuration, "[server]\nport = 1\n");
+  EXPECT_EQ(evidence->joint_names, (std::vector<std::string>{"s", "l"}));
+  ASSERT_EQ(evidence->views.size(), 2U);
+  EXPECT_EQ(evidence->views[0].stamp_s, 12.5);
+  EXPECT_EQ(evidence->views[1].joint_positions_rad, (std::vector<double>{0.2, 3}));
+  EXPECT_EQ(run_raw("DELETE FROM evidence"), "evidence is kept");
 }
 
 TEST_F(Store, ResultsCannotBeChangedOrDeleted) {

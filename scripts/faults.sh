@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# What the store of calibrations survives.
+#   scripts/faults.sh kills [N] [SEED]  kills the daemon N times (200) at random moments of its calibrations in the simulated
+#                                       cell, restarts it and checks what is stored
+#   scripts/faults.sh storage           power cuts, failing system calls and allocations, each in turn; full, read-only and
+#                                       damaged disks
+# They are built first. docs/storage.md says what is promised.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+what=${1:-}
+[ $# -gt 0 ] && shift
+build() { cmake --build build/release --target "$@" > /dev/null; }
+[ -f build/release/CMakeCache.txt ] || cmake --preset release > /dev/null
+case $what in
+  kills)
+    build all
+    python3 -B tests/e2e/kills.py "$@"
+    ;;
+  storage)
+    build all
+    ctest --test-dir build/release --output-on-failure -R '^(PowerLoss|.*SystemCalls|Memory|Recovery|.*Hindered|e2e_storage)'
+    ;;
+  *)
+    echo "faults: unknown '$what'; see the head of scripts/faults.sh" >&2
+    exit 2
+    ;;
+esac
