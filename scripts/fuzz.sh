@@ -26,8 +26,8 @@ run() {
   local name=$1 options=()
   mkdir -p "$build/corpus/$name" "$build/findings/$name"
   if [ -f "$source/dictionaries/$name.dict" ]; then options+=("-dict=$source/dictionaries/$name.dict"); fi
-  TMPDIR=$scratch "$build/tests/fuzz_$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2560 -max_len=16384 \
-    -print_final_stats=1 -artifact_prefix="$build/findings/$name/" "${options[@]}" \
+  TMPDIR=$scratch "$build/tests/fuzz_$name" -max_total_time="$seconds" -timeout=60 -report_slow_units=60 -rss_limit_mb=2560 \
+    -max_len=16384 -print_final_stats=1 -artifact_prefix="$build/findings/$name/" "${options[@]}" \
     "$build/corpus/$name" "$build/tests/fuzz/corpora/$name" > "$build/findings/$name.log" 2>&1 || true
 }
 

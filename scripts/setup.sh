@@ -7,7 +7,7 @@
 #   scripts/setup.sh           install what is missing (as root, or through sudo)
 #   scripts/setup.sh --check   only say what is missing; exit status 1 if something is
 #   scripts/setup.sh --list    print the packages
-#   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 500 MB); scripts/fuzz.sh does so
+#   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 300 MB); scripts/fuzz.sh does so
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
