@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/calibration/check_pose.hpp"
+#include "core/drift/tile_adder.hpp"
 #include "core/registration/linearization.hpp"
 
 namespace calibrd {
@@ -26,7 +27,6 @@ constexpr int kClusterSide = 6;
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
 constexpr std::size_t kLeastCells = 150;
-constexpr std::size_t kRowsInSingle = 128;
 /// Below this share of what could be seen the fit may be of anything.
 constexpr double kLeastShare = 0.35;
 /// No direction is known worse than this before the frame, rad and m: along a plain wall the fit would slide
@@ -38,14 +38,12 @@ constexpr double kVague = 0.02, kVagueOffset_m = 0.1;
 constexpr double kSpuriousSafety = 3;
 /// Share of a frame's covariance that no other frame averages out: bumps that were no planes, a part that
 /// hangs before them. Where the background shows a direction well it is next to nothing.
-constexpr double kUnmodelledShare = 0.2;
+constexpr double kUnmodelledShare = 0.05;
 /// A shift of less squares than this, noise and tolerance taken off, is none that the test would count, and
 /// needs no support: two standard deviations.
 constexpr double kNoShift = 4;
 
 using Sums = BackgroundMatrix;
-using Slope = Eigen::Matrix<float, kBackgroundParameters + 1, 1>;
-using Products = Eigen::Matrix<float, kBackgroundParameters + 1, kBackgroundParameters + 1>;
 
 int tile_side(const CameraModel& grid) { return (grid.width - 1) / kTilesPerRow + 1; }
 
@@ -141,43 +139,28 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Backg
   fit.tiles.resize(tiles_);
   whitened_.clear();
   pulls_.assign(clusters_, 0.0);
-  Slope start = Slope::Zero();
+  TileAdder::Slope start = TileAdder::Slope::Zero();
   start.head<kParameters>() = at.cast<float>();
-  Products products = Products::Zero();  // in single precision over some rows, then in double
-  Slope gradient = Slope::Zero();
-  std::size_t pending = 0, tile = 0;
-  const auto flush = [&] {
-    fit.tiles[tile].information += products.topLeftCorner<kParameters, kParameters>().cast<double>();
-    fit.tiles[tile].gradient += gradient.head<kParameters>().cast<double>();
-    products.setZero();
-    gradient.setZero();
-    pending = 0;
-  };
-  for (const Row& row : rows_) {
-    if (row.tile != tile) {
-      flush();
-      tile = row.tile;
+  {
+    TileAdder sums(fit.tiles);
+    for (const Row& row : rows_) {
+      const float z = depth_m_[row.cell];
+      if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
+      const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
+      if (std::abs(residual) < kFarKernel_m) ++fit.around;
+      const double off = residual / kernel_m;
+      if (std::abs(off) >= 1) continue;
+      const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
+      sums.begin(row.tile);
+      sums.add(row.slope, static_cast<float>(robust) / (row.sigma_m * row.sigma_m), residual);
+      const double pull = robust * whitened;
+      pulls_[row.cluster] += pull;
+      fit.squares += pull * pull;
+      whitened_.push_back(static_cast<float>(whitened));
+      fit.common += 1 / (1 + static_cast<double>(map_.cells()[row.cell].frames));
+      ++fit.used;
     }
-    const float z = depth_m_[row.cell];
-    if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
-    const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
-    if (std::abs(residual) < kFarKernel_m) ++fit.around;
-    const double off = residual / kernel_m;
-    if (std::abs(off) >= 1) continue;
-    const double robust = (1 - off * off) * (1 - off * off), whitened = residual / row.sigma_m;
-    const float weight = static_cast<float>(robust) / (row.sigma_m * row.sigma_m);
-    const Slope weighted = weight * row.slope;
-    products.noalias() += weighted * row.slope.transpose();
-    gradient += residual * weighted;
-    if (++pending == kRowsInSingle) flush();
-    const double pull = robust * whitened;
-    pulls_[row.cluster] += pull;
-    fit.squares += pull * pull;
-    whitened_.push_back(static_cast<float>(whitened));
-    fit.common += 1 / (1 + static_cast<double>(map_.cells()[row.cell].frames));
-    ++fit.used;
   }
-  flush();
   for (const TileSums& sums : fit.tiles) {
     fit.information += sums.information;
     fit.gradient += sums.gradient;

@@ -124,7 +124,7 @@ void DriftWatch::test(const BackgroundObservation& observation) {
   if (is_pinned) pinned_s_ = frame_s_;
   follow_dispute(observation, !is_pinned && pins(innovation_->covariance));
   count_quiet();
-  last_covariance_ = innovation_->supported_covariance;
+  last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
   if (!test_.is_alarmed() || moved_) return;

@@ -118,7 +118,7 @@ class DriftWatch {
   ShiftTest test_;
   DriftReport report_;
   std::optional<Innovation> innovation_;
-  std::optional<Matrix6d> last_covariance_;  // of the last innovation
+  std::optional<Matrix6d> last_covariance_;  // of the last innovation, all parts of the image together
   std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
   bool moved_ = false, is_refined_ = false, lies_elsewhere_ = false;

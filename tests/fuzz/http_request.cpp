@@ -43,7 +43,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   api::FakeCell cell;
   if (input.byte() & 1U) cell.make_calibrated();
   const std::size_t piece = 1 + 16U * input.byte();
-  const api::Router router = api::make_routes(cell);
+  const api::EventHub events("run");
+  const api::Router router = api::make_routes(cell, events);
   std::optional<std::string_view> rest = input.text();
   while (rest && !rest->empty()) {
     api::RequestParser parser;

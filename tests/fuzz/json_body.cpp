@@ -39,7 +39,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::require(request.timeout.count() > 0 && request.timeout.count() <= 600, "a timeout in bounds");
     return api::CaptureArchive{"a.tar", "tar bytes"};
   };
-  const api::Router router = api::make_routes(cell);
+  const api::EventHub events("run");
+  const api::Router router = api::make_routes(cell, events);
   fuzz::check_response(
       router.answer({"POST", path, {}, {{"content-type", "application/json"}}, std::string(input.text())}));
   check(cell.last_start_all.each.guess_T_base_sensor, cell.last_start_all.each.postures);

@@ -142,8 +142,8 @@ TEST(BackgroundMatcher, KnowsHowMuchOfItsErrorIsTheMapsBesideWhatNoModelHas) {
   Room room = Room::furnished();
   room.has_arm = false;
   BackgroundMap one = learnt(room, 1), six = learnt(room, 6);
-  EXPECT_NEAR(observed(room, one, Vector6d::Zero()).common_share, 0.2 + 1.0 / 2, 0.01);
-  EXPECT_NEAR(observed(room, six, Vector6d::Zero()).common_share, 0.2 + 1.0 / 7, 0.01);
+  EXPECT_NEAR(observed(room, one, Vector6d::Zero()).common_share, 0.05 + 1.0 / 2, 0.01);
+  EXPECT_NEAR(observed(room, six, Vector6d::Zero()).common_share, 0.05 + 1.0 / 7, 0.01);
 }
 
 }  // namespace
