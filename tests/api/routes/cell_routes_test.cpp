@@ -70,6 +70,25 @@ TEST_F(CellRoutes, StoreThatCannotBeWrittenIsNotReadyAndSaysWhy) {
   EXPECT_EQ(get("/readyz?verbose").status, 200);
 }
 
+TEST_F(CellRoutes, EvidenceOfACalibrationNamesItsViewsWhileTheyAreKept) {
+  EXPECT_EQ(get("/api/v1/calibrations/c1").status, 200);
+  EXPECT_TRUE(body().at("evidence").is_null());
+  EXPECT_EQ(get("/api/v1/calibrations/c1/capture").status, 404);
+  EXPECT_EQ(body().at("code"), "capture_not_kept");
+  cell_.calibration_report.evidence = Evidence{"0.1", "[robot]", {"joint_s"}, {{2.5, {0.25}}}};
+  cell_.calibration_report.capture_bytes = 9;
+  cell_.capture_of_calibration = "tar bytes";
+  EXPECT_EQ(get("/api/v1/calibrations/c1").status, 200);
+  const auto evidence = body().at("evidence");
+  EXPECT_EQ(evidence.at("software_version"), "0.1");
+  EXPECT_EQ(evidence.at("views").at(0).at("joint_positions_rad").at(0), 0.25);
+  EXPECT_EQ(evidence.at("capture").at("bytes"), 9);
+  const auto capture = get(std::string(evidence.at("capture").at("path").as_string()));
+  EXPECT_EQ(capture.status, 200);
+  EXPECT_EQ(capture.body, "tar bytes");
+  EXPECT_EQ(get("/api/v1/calibrations/c2/capture").status, 404);
+}
+
 TEST_F(CellRoutes, CaptureIsATarDownload) {
   CaptureRequest wanted;
   cell_.on_capture = [&](const CaptureRequest& request) -> Result<CaptureArchive> {
