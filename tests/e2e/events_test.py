@@ -19,13 +19,15 @@ class Listener:
         self.connection.request("GET", "/api/v1/events", headers={"Last-Event-ID": last_id} if last_id else {})
         self.answer = self.connection.getresponse()
         self.last_id = last_id
+        self.newest: dict[str, dict] = {}  # data of each kind of event
 
     def next(self) -> tuple[str, dict]:
         fields: dict[str, str] = {}
         while line := self.answer.readline().decode():
             if line == "\n" and "data" in fields:
                 self.last_id = fields.get("id", self.last_id)
-                return fields["event"], json.loads(fields["data"])
+                self.newest[fields["event"]] = json.loads(fields["data"])
+                return fields["event"], self.newest[fields["event"]]
             name, _, value = line.rstrip("\n").partition(": ")
             if name:
                 fields[name] = value
@@ -41,6 +43,11 @@ class Listener:
                 return data
         raise AssertionError(f"no {event} with {wanted}; heard {heard[-20:]}")
 
+    def until(self, event: str, **wanted) -> dict:
+        """As wait(), but what was heard last counts, too."""
+        now = self.newest.get(event)
+        return now if now and all(now[key] == value for key, value in wanted.items()) else self.wait(event, **wanted)
+
     def close(self) -> None:
         self.connection.close()
 
@@ -55,19 +62,19 @@ class Events(CellTest):
         job = daemon.start_calibration(postures=4).rsplit("/", 1)[1]
         listener.wait("calibration", calibration=job, status="collecting")
         self.assertTrue(listener.wait("calibration", calibration=job, status="succeeded")["current"])
-        listener.wait("drift", verdict="in_place")
+        listener.until("drift", verdict="in_place")
         listener.close()
         simulator.tell("POST", f"/sensors/{SENSOR}/knock", turn_deg=[0, 0, 3.0], shift_m=[0.02, 0.02, 0.01])
         time.sleep(1)  # away while it happens
         listener = Listener(daemon.port, listener.last_id)
-        self.assertIn("moved", listener.wait("pose", state="drifted")["reason"])
+        self.assertIn("moved", listener.until("pose", state="drifted")["reason"])
         listener.wait("calibration", status="succeeded")
         listener.close()
         daemon.stop()
         again = self.serve(simulator).wait_ready()
         listener = Listener(again.port, listener.last_id)
         self.assertEqual(listener.next()[0], "reset")
-        listener.wait("pose", valid=True)
+        listener.until("pose", valid=True)
         listener.close()
 
 
