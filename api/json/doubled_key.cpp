@@ -19,9 +19,18 @@ struct Keys {
   static constexpr std::size_t max_string_size = static_cast<std::size_t>(-1);
   using Code = boost::system::error_code;
 
-  bool on_object_begin(Code&) { return objects.emplace_back(), true; }
-  bool on_object_end(std::size_t, Code&) { return objects.pop_back(), true; }
-  bool on_key_part(json::string_view part, std::size_t, Code&) { return key.append(part), true; }
+  bool on_object_begin(Code&) {
+    objects.emplace_back();
+    return true;
+  }
+  bool on_object_end(std::size_t, Code&) {
+    objects.pop_back();
+    return true;
+  }
+  bool on_key_part(json::string_view part, std::size_t, Code&) {
+    key.append(part);
+    return true;
+  }
   bool on_key(json::string_view part, std::size_t, Code&) {
     key.append(part);
     if (!objects.back().insert(key).second) doubled = key;

@@ -104,7 +104,8 @@ Result<bool> read_bool(const json::object& object, std::string_view key, bool ot
 Result<std::optional<int>> read_int(const json::object& object, std::string_view key, int min, int max) {
   const auto* value = find(object, key);
   if (!value) return std::optional<int>();
-  const double number = value->is_number() ? value->to_number<double>() : min - 1.0;  // 5.0 is a whole number, too
+  const double number =
+      value->is_number() ? value->to_number<double>() : min - 1.0;  // 5.0 is a whole number, too
   if (!(number >= min && number <= max) || number != std::floor(number))
     return wrong(key, *value, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   return std::optional<int>(static_cast<int>(number));

@@ -57,8 +57,7 @@ json::object drift_json(const DriftReport& drift) {
         {"farther", now.farther},
         {"dark", now.dark}}},
       {"healing", drift.healing},
-      {"healing_in_s",
-       drift.healing_in ? json::value(drift.healing_in->count()) : json::value(nullptr)},
+      {"healing_in_s", drift.healing_in ? json::value(drift.healing_in->count()) : json::value(nullptr)},
       {"candidate", drift.candidate.empty() ? json::value(nullptr) : json::value(drift.candidate)}};
   // Where it seems to be now is no pose to use: it has not been judged.
   body["T_base_sensor_seen"] =

@@ -4,7 +4,8 @@
 
 #include <array>
 #include <cstdio>
-#include <ctime>
+
+#include "core/base/utc_text.hpp"
 
 namespace calibrd::api {
 
@@ -58,15 +59,10 @@ const char* name_of(MotionStatus status) {
 
 std::string rfc3339(SystemTime time) {
   const auto ms = std::chrono::floor<std::chrono::milliseconds>(time);
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(ms);
-  const std::time_t whole = std::chrono::system_clock::to_time_t(seconds);
-  std::tm utc{};
-  gmtime_r(&whole, &utc);
-  std::array<char, 64> text{};
-  const auto length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::snprintf(text.data() + length, text.size() - length, ".%03dZ",
-                static_cast<int>((ms - seconds).count()));
-  return text.data();
+  const auto fraction = ms - std::chrono::floor<std::chrono::seconds>(ms);
+  std::array<char, 8> end{};
+  std::snprintf(end.data(), end.size(), ".%03dZ", static_cast<int>(fraction.count()));
+  return utc_text(time, kUtcSeconds) + end.data();
 }
 
 }  // namespace calibrd::api

@@ -7,7 +7,8 @@
 
 namespace calibrd::api {
 
-/// Every route of the HTTP interface (docs/api.md) over `service` and `events`, which must outlive the router.
+/// Every route of the HTTP interface (docs/api.md) over `service` and `events`, which must outlive the
+/// router.
 Router make_routes(CellService& service, const EventHub& events);
 
 // The parts it is made of.

@@ -71,10 +71,10 @@ struct DriftEvent {
 struct DriftReport {
   std::string sensor_id;
   PoseState pose_state = PoseState::uncalibrated;
-  std::string healing;    ///< "automatic", "ask", "off"
-  std::string candidate;  ///< id of a calibration that waits to be activated; empty: none
+  std::string healing;                ///< "automatic", "ask", "off"
+  std::string candidate;              ///< id of a calibration that waits to be activated; empty: none
   std::optional<Seconds> healing_in;  ///< until the next attempt to calibrate it again; nothing: none is due
-  bool watched = false;   ///< there is a pose to watch
+  bool watched = false;               ///< there is a pose to watch
   calibrd::DriftReport now;
   std::optional<Seconds> age;       ///< of the newest frame that was looked at
   std::vector<DriftSample> series;  ///< oldest first, the last ten minutes

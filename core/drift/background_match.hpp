@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/drift/background_map.hpp"
+#include "core/drift/stands_within.hpp"
 #include "core/drift/window_support.hpp"
 #include "core/geometry/pose.hpp"
 
@@ -69,9 +70,10 @@ struct BackgroundObservation {
 /// direction that the background does not show has a large one. One thread at a time.
 class BackgroundMatcher {
  public:
-  /// `map` must outlive it.
-  /// `tolerance`: of turn (rad) and shift (m) of the middle of the background.
-  explicit BackgroundMatcher(const BackgroundMap& map, const Vector6d& tolerance = Vector6d::Constant(5e-4))
+  /// `map` must outlive it. `tolerance`: of turn (rad) and shift (m) of the middle of the background; a shift
+  /// within it needs no support.
+  explicit BackgroundMatcher(const BackgroundMap& map,
+                             const Vector6d& tolerance = Vector6d::Constant(kStandsWithin))
       : map_(map), tolerance_(tolerance) {
     refresh();
   }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // Where DriftWatch looks for a background that is not, pixel by pixel, where it was.
+
 #include <Eigen/Eigenvalues>
-#include <cmath>
 
 #include "core/drift/drift_watch.hpp"
 
@@ -15,12 +15,6 @@ constexpr double kMuch = 0.35, kWhole = 0.9;  // shares of a frame
 constexpr double kMoreThanInPlace = 1.5;
 
 }  // namespace
-
-double DriftWatch::worst_sigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
-                       .eigenvalues()
-                       .maxCoeff());
-}
 
 /// An alignment that leaves a direction open may slide along it as far as it likes, and is no evidence.
 bool DriftWatch::is_pinned(const BackgroundAlignment& found) const {

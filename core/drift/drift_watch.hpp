@@ -101,8 +101,6 @@ class DriftWatch {
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
-  static double worst_sigma(const Eigen::Matrix3d& covariance);
-
   static constexpr double kEvidence_s = 1;  // what was seen so lately is of now
   /// Where a moved sensor is now is told only when it is known so well.
   static constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01;

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "core/drift/stands_within.hpp"
 #include "core/geometry/pose.hpp"
 
 namespace calibrd {
 
 struct ShiftTestSettings {
-  double tolerance_m = 0.0005, tolerance_rad = 0.0005;  ///< a sensor that has moved less stands
-  double false_alarms_per_year = 0.1;                   ///< of one sensor that stands, at `rate_hz`
+  double tolerance_m = kStandsWithin, tolerance_rad = kStandsWithin;
+  double false_alarms_per_year = 0.1;  ///< of one sensor that stands, at `rate_hz`
   double rate_hz = 30;
 };
 

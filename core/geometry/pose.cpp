@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/geometry/pose.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
 namespace calibrd {
 
 Eigen::Matrix3d exp_so3(const Eigen::Vector3d& rotation_rad) {
@@ -41,6 +44,12 @@ Matrix6d turn_of_axes(const Eigen::Matrix3d& R_a_b) {
   Matrix6d turn = Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_a_b;
   return turn;
+}
+
+double worst_sigma(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+                       .eigenvalues()
+                       .maxCoeff());
 }
 
 Pose turned_about(const Pose& T_base_sensor, const Eigen::Vector3d& pivot_sensor,

@@ -29,6 +29,9 @@ Vector6d difference(const Pose& from, const Pose& to);
 /// Takes a δ = (δω, δt) of axes b to axes a: δ_a = turn_of_axes(R_a_b) * δ_b.
 Matrix6d turn_of_axes(const Eigen::Matrix3d& R_a_b);
 
+/// Standard deviation in the direction that is known worst.
+double worst_sigma(const Eigen::Matrix3d& covariance);
+
 /// Turns `T_base_sensor` about the point `pivot_sensor` (m, sensor frame), then moves it by `shift_m` (base
 /// axes).
 Pose turned_about(const Pose& T_base_sensor, const Eigen::Vector3d& pivot_sensor,

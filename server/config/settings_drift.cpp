@@ -27,7 +27,8 @@ void declare_drift(std::vector<Setting>& table) {
   key("healing_patience", &DriftConfig::healing_patience, duration(0ms, 10min), "",
       "The quick attempt begins after this time with the postures there are, if there is one.");
   key("healing_cooldown", &DriftConfig::healing_cooldown, duration(100ms, 24h), "",
-      "Pause after failed attempts, before a quick result is made better, and for a sensor that moves for the fifth "
+      "Pause after failed attempts, before a quick result is made better, and for a sensor that moves for "
+      "the fifth "
       "time within ten minutes; doubles from one to the next up to ten minutes.");
 }
 

@@ -4,18 +4,15 @@
 
 #include <array>
 #include <cstdio>
-#include <ctime>
+
+#include "core/base/utc_text.hpp"
 
 namespace calibrd {
 
 std::string dated_id(std::chrono::system_clock::time_point time, std::mt19937& random) {
-  const auto seconds = std::chrono::system_clock::to_time_t(time);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> date{};
   std::array<char, 64> id{};
-  std::strftime(date.data(), date.size(), "%Y%m%dT%H%M%S", &utc);
-  std::snprintf(id.data(), id.size(), "%s-%06x", date.data(), static_cast<unsigned>(random() & 0xffffffU));
+  const auto date = utc_text(time, "%Y%m%dT%H%M%S");
+  std::snprintf(id.data(), id.size(), "%s-%06x", date.c_str(), static_cast<unsigned>(random() & 0xffffffU));
   return id.data();
 }
 

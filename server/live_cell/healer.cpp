@@ -75,16 +75,14 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   const auto found = patients_.find(calibration.sensor_id);
   if (found == patients_.end() || !calibration.finished) return;
   Patient& patient = found->second;
-  if (patient.calibration != calibration.id) {  // somebody's own
+  if (!patient.under_way || patient.under_way->calibration_id != calibration.id) {  // somebody's own
     if (calibration.current) patient.wants_all = false;
     return;
   }
-  patient.calibration.clear();
-  if (patient.is_refining) {  // however it has ended: there is a pose, or the sensor has moved and is next
-    patient.is_refining = false;
-    changed_.notify_all();
-    return;
-  }
+  const bool refined = patient.under_way->refines;
+  patient.under_way.reset();
+  changed_.notify_all();
+  if (refined) return;  // however it has ended: there is a pose, or the sensor has moved and is next
   patient.wants_all = tells_too_little(patient, calibration);
   if (calibration.status == api::JobStatus::succeeded && !calibration.activate) {
     patient.candidate = calibration.id;
@@ -92,13 +90,11 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   }
   const bool eager = patient.attempts < kEagerAttempts && calibration.status == api::JobStatus::failed;
   patient.due = Clock::now() + (eager ? Clock::duration(0) : pause_after(patient.attempts));
-  changed_.notify_all();
 }
 
 void Healer::on_choice(const std::string& sensor_id) {
   const std::lock_guard lock(mutex_);
-  if (const auto found = patients_.find(sensor_id); found != patients_.end())
-    found->second.wants_all = false;
+  if (const auto found = patients_.find(sensor_id); found != patients_.end()) found->second.wants_all = false;
 }
 
 bool Healer::tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const {
@@ -132,8 +128,7 @@ std::optional<Clock::time_point> Healer::next_attempt(const std::string& sensor_
   const auto found = patients_.find(sensor_id);
   if (found == patients_.end()) return std::nullopt;
   const Patient& patient = found->second;
-  if (!patient.drifted || !patient.calibration.empty() || has_candidate(sensor_id, patient))
-    return std::nullopt;
+  if (!patient.drifted || patient.under_way || has_candidate(sensor_id, patient)) return std::nullopt;
   return patient.due;
 }
 
@@ -141,11 +136,12 @@ void Healer::run() {
   std::unique_lock lock(mutex_);
   while (!is_stopping_) {
     auto wake = Clock::now() + kLongWait;
-    std::string next, overtaken;
-    for (const auto& [id, patient] : patients_) {
+    std::string next;
+    Patient* overtaken = nullptr;  // a pose that has drifted needs another one, not a better one some time
+    for (auto& [id, patient] : patients_) {
       if (!patient.drifted && !patient.wants_all) continue;
-      if (!patient.calibration.empty()) {
-        if (patient.drifted && patient.is_refining) overtaken = patient.calibration;
+      if (patient.under_way) {
+        if (patient.drifted && patient.under_way->refines) overtaken = &patient;
         continue;
       }
       if (has_candidate(id, patient)) {
@@ -155,19 +151,18 @@ void Healer::run() {
       if (patient.due <= Clock::now()) next = id;
       wake = std::min(wake, patient.due);
     }
-    if (!overtaken.empty())
-      cancel(overtaken, lock);
+    if (overtaken)
+      cancel(*overtaken, lock);
     else if (next.empty())
       changed_.wait_until(lock, wake);
     else
-      attempt(next, lock);
+      begin(next, lock);
   }
 }
 
-/// A pose that has drifted meanwhile needs another one at once, not a better one some time.
-void Healer::cancel(const std::string& calibration_id, std::unique_lock<std::mutex>& lock) {
-  for (auto& [id, patient] : patients_)
-    if (patient.calibration == calibration_id) patient.calibration.clear(), patient.is_refining = false;
+void Healer::cancel(Patient& patient, std::unique_lock<std::mutex>& lock) {
+  const std::string calibration_id = patient.under_way->calibration_id;
+  patient.under_way.reset();
   lock.unlock();
   cancel_(calibration_id);
   lock.lock();
@@ -186,7 +181,7 @@ api::CalibrationRequest Healer::next_request(const std::string& sensor_id) const
   return request;
 }
 
-void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock) {
+void Healer::begin(const std::string& sensor_id, std::unique_lock<std::mutex>& lock) {
   const auto request = next_request(sensor_id);
   is_starting_ = true;
   lock.unlock();
@@ -199,8 +194,7 @@ void Healer::attempt(const std::string& sensor_id, std::unique_lock<std::mutex>&
     patient.due = Clock::now() + kBusyRetry;
     return;
   }
-  patient.calibration = started->id;
-  patient.is_refining = !request.after_move;
+  patient.under_way = Attempt{started->id, !request.after_move};
   patient.wants_all = false;
   if (request.after_move) ++patient.attempts;
 }

@@ -62,11 +62,15 @@ class Healer {
   void request_stop();
 
  private:
+  /// A calibration that it has started: of a sensor that has moved, or to make a quick pose better.
+  struct Attempt {
+    std::string calibration_id;
+    bool refines = false;
+  };
   struct Patient {
     bool drifted = false;
-    bool wants_all = false;      // its pose is from few postures, and could be better
-    bool is_refining = false;    // `calibration` is for that
-    std::string calibration;  // under way; empty: none
+    bool wants_all = false;  ///< its pose is from few postures, and could be better
+    std::optional<Attempt> under_way;
     std::string candidate;
     Clock::time_point candidate_seen_at;
     int attempts = 0;  ///< since it drifted
@@ -74,8 +78,8 @@ class Healer {
     Clock::time_point last_move, due;
   };
   void run();
-  void attempt(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
-  void cancel(const std::string& calibration_id, std::unique_lock<std::mutex>& lock);
+  void begin(const std::string& sensor_id, std::unique_lock<std::mutex>& lock);
+  void cancel(Patient& patient, std::unique_lock<std::mutex>& lock);
   api::CalibrationRequest next_request(const std::string& sensor_id) const;
   bool tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const;
   Clock::duration pause_after(int attempts) const;

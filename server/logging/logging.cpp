@@ -5,7 +5,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <ctime>
+#include "core/base/utc_text.hpp"
 
 namespace calibrd {
 namespace {
@@ -32,12 +32,8 @@ void append_escaped(spdlog::memory_buf_t& line, std::string_view text) {
 
 std::string utc_time(spdlog::log_clock::time_point time) {
   using namespace std::chrono;
-  const auto seconds = spdlog::log_clock::to_time_t(time);
   const auto ms = duration_cast<milliseconds>(time.time_since_epoch()).count() % 1000;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", utc.tm_year + 1900, utc.tm_mon + 1,
-                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, ms);
+  return fmt::format("{}.{:03}Z", utc_text(time, kUtcSeconds), ms);
 }
 
 class JsonLineFormatter final : public spdlog::formatter {

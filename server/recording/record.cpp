@@ -4,10 +4,8 @@
 
 #include <stdlib.h>
 
-#include <array>
-#include <ctime>
-
 #include "api/problem/api_error.hpp"
+#include "core/base/utc_text.hpp"
 #include "server/recording/pack_robot.hpp"
 #include "server/recording/tar.hpp"
 
@@ -35,15 +33,6 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-std::string utc_stamp() {
-  const auto now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
-  return text.data();
-}
-
 Error translated(const Error& error) { return fail(api::ApiError::capture_failed, error.message()); }
 
 }  // namespace
@@ -51,7 +40,7 @@ Error translated(const Error& error) { return fail(api::ApiError::capture_failed
 Result<api::CaptureArchive> archive_capture(const Capture& capture, std::span<const fs::path> search_paths) {
   const TemporaryFolder temporary;
   if (temporary.path().empty()) return fail(api::ApiError::capture_failed, "no temporary folder can be made");
-  const auto name = capture.sensor_id + "-" + utc_stamp();
+  const auto name = capture.sensor_id + "-" + utc_text(std::chrono::system_clock::now(), kUtcCompact);
   const auto folder = temporary.path() / name;
   if (auto written = write_capture(folder, capture, "robot.urdf"); !written)
     return translated(written.error());

@@ -3,12 +3,11 @@
 #include "server/storage/store_opening.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <ctime>
 #include <fstream>
 
 #include "api/json/calibration_result_json.hpp"
+#include "core/base/utc_text.hpp"
 #include "server/storage/durable_file.hpp"
 #include "server/storage/saved_pose_rows.hpp"
 #include "server/storage/schema.hpp"
@@ -21,15 +20,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "SQLite format 3";
 
 std::string damaged_prefix(const fs::path& file) { return file.filename().string() + ".damaged-"; }
-
-std::string utc_now() {
-  const auto now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc);
-  return text.data();
-}
 
 /// Of the file's structure. That every table is there at all, SQLite does not ask.
 Status check_structure(Database& database) {
@@ -113,7 +103,8 @@ bool is_damaged_store(const fs::path& file, const Error& error) {
 }
 
 Result<fs::path> put_aside(const fs::path& file) {
-  auto aside = file.parent_path() / (damaged_prefix(file) + utc_now());
+  auto aside =
+      file.parent_path() / (damaged_prefix(file) + utc_text(std::chrono::system_clock::now(), kUtcCompact));
   while (fs::exists(aside)) aside += "+";
   for (const char* ending : {"", "-wal", "-shm"}) {
     auto from = file, to = aside;

@@ -36,7 +36,8 @@ TEST(StrictObject, BadBodiesAreRefusedWithTheirReason) {
 TEST(StrictObject, KeyThatStandsTwiceIsNamed) {
   const auto read = read_body(R"({"postures": 3, "post\u0075res": 4})", kJson, {"postures", "method"});
   ASSERT_FALSE(read);
-  EXPECT_NE(read.error().detail.find("postures: the key stands twice"), std::string::npos) << read.error().detail;
+  EXPECT_NE(read.error().detail.find("postures: the key stands twice"), std::string::npos)
+      << read.error().detail;
   EXPECT_EQ(failure(R"({"method": {"a": 1, "b": [{"a": 2, "a": 3}]}})"), ApiError::bad_value);
   EXPECT_TRUE(read_body(R"({"method": {"a": {"a": 1}, "b": [{"a": 2}, {"a": 3}]}})", kJson, {"method"}));
 }

@@ -74,7 +74,7 @@ class WatchedRoom : public ::testing::Test {
   VirtualCell cell_;
   DriftWatch watch_;
   Vector6d moved_ = Vector6d::Zero();  // the sensor, as perturbed() takes it
-  double dark_share_ = 0;  // of the picture, from its left
+  double dark_share_ = 0;              // of the picture, from its left
   bool joints_lost_ = false;
   double now_s_ = 100;
   int frames_ = 0, moved_at_frame_ = -1;
