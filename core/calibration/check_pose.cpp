@@ -95,7 +95,8 @@ PoseCheck PoseChecker::check(const View& view, const Pose& T_base_sensor, const 
   Vector6d allowed;
   allowed << Eigen::Vector3d::Constant(kModelTurn_rad * kModelTurn_rad),
       Eigen::Vector3d::Constant(kModelShift_m * kModelShift_m);
-  Matrix6d covariance = move * (tracked->covariance + pose_covariance) * move.transpose();
+  check.pose_covariance = move * pose_covariance * move.transpose();
+  Matrix6d covariance = move * tracked->covariance * move.transpose() + check.pose_covariance;
   covariance.diagonal() += scatter * scatter * allowed;
   check.turn_shift = shift;
   check.turn_shift_covariance = covariance;

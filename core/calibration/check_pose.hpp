@@ -27,6 +27,7 @@ struct PoseCheck {
   /// sensor that moved, and the covariance that all these explain.
   Vector6d turn_shift = Vector6d::Zero();
   Matrix6d turn_shift_covariance = Matrix6d::Identity();
+  Matrix6d pose_covariance = Matrix6d::Zero();  ///< of that the pose's own, which all its checks share
   Eigen::Vector3d middle_base = Eigen::Vector3d::Zero();
 };
 

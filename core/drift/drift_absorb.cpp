@@ -76,6 +76,7 @@ void DriftWatch::absorb_what_was_pushed(double now_s) {
     chosen[i] = is_seen && disputed_.holds(x, y) && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
   }
   take(chosen);
+  if (innovation_) followed_ += innovation_->turn_shift;
   disputed_since_s_ = -1;
 }
 

@@ -16,6 +16,8 @@ constexpr double kDenial = 16;
 /// The sensor's own move may be what the robot shows when it leaves no more than this share of it (χ²)
 /// unexplained.
 constexpr double kUnexplainedShare = 0.4;
+/// A background that shows every direction now and then is the one to tell.
+constexpr double kUnpinned_s = 30;
 constexpr double kMeanFrames = 7;  // that the mean of the test is of
 
 }  // namespace
@@ -23,11 +25,24 @@ constexpr double kMeanFrames = 7;  // that the mean of the test is of
 void DriftWatch::add_check(const PoseCheck& check, double now_s) {
   robot_word_.add(check, joints_, now_s);
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
-  if (!robot_word_.is_against() || model_wrong_ || moved_) return;
-  if (is_robots_shift_possible())
-    moved_ = true;
-  else
-    model_wrong_ = true;
+  if (model_wrong_ || moved_) return;
+  if (robot_word_.is_against()) {
+    const PoseCheck& newest = *robot_word_.newest();
+    moved_ = is_robots_shift_possible(
+        {newest.turn_shift, newest.turn_shift_covariance, newest.middle_base, newest.shift_sigmas});
+    model_wrong_ = !moved_;
+  } else {
+    moved_ = has_crept();
+  }
+}
+
+/// Along a direction that the background has not shown for long, or in which it was learnt anew, where only
+/// the robot can tell. Elsewhere a shift so small is the model's.
+bool DriftWatch::has_crept() const {
+  const bool is_shown = has_background() && frame_s_ - pinned_s_ < kUnpinned_s;
+  if (is_shown && followed_.isZero()) return false;
+  const auto creep = robot_word_.creep();
+  return creep && is_robots_shift_possible(*creep);
 }
 
 /// For each hypothesis how badly the robot's apparent shift fits it.
@@ -45,19 +60,19 @@ bool DriftWatch::robot_denies_the_shift(double now_s) const {
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
-bool DriftWatch::is_robots_shift_possible() const {
+bool DriftWatch::is_robots_shift_possible(const RobotShift& robot) const {
   if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
-  const PoseCheck& check = *robot_word_.newest();
-  if (!(check.shift_sigmas > 0))
+  if (!(robot.sigmas > 0))
     return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
-  const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_.translation()) *
+  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_.translation()) *
                         shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
-  const Vector6d left = check.turn_shift - move * test_.mean();
+  const Vector6d left = robot.turn_shift - move * test_.mean();
   Matrix6d mean_covariance = *last_covariance_ / kMeanFrames;
   mean_covariance.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);
   mean_covariance.diagonal().tail<3>().array() += std::pow(settings_.shift.tolerance_m, 2);
-  const Matrix6d covariance = check.turn_shift_covariance + move * mean_covariance * move.transpose();
-  return left.dot(covariance.ldlt().solve(left)) < kUnexplainedShare * std::pow(check.shift_sigmas, 2);
+  mean_covariance += followed_ * followed_.transpose();
+  const Matrix6d covariance = robot.covariance + move * mean_covariance * move.transpose();
+  return left.dot(covariance.ldlt().solve(left)) < kUnexplainedShare * std::pow(robot.sigmas, 2);
 }
 
 }  // namespace calibrd

@@ -70,6 +70,7 @@ void DriftWatch::start_over() {
   lost_since_s_ = offset_over_s_ = learnt_s_ = disputed_since_s_ = -1;
   evidence_s_ = pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
+  followed_.setZero();
   absorbed_s_ = frame_s_;
   report_ = {};
   report_.threshold = test_.threshold();

@@ -96,7 +96,8 @@ class DriftWatch {
   void judge(double now_s);
   void on_denial();
   bool robot_denies_the_shift(double now_s) const;
-  bool is_robots_shift_possible() const;
+  bool is_robots_shift_possible(const RobotShift& robot) const;
+  bool has_crept() const;
   bool is_known_to_stand() const;
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
@@ -126,6 +127,9 @@ class DriftWatch {
   double disputed_since_s_ = -1,
          disputed_s_ = -1e9;  // a shift without support shows, in the window disputed_
   CellWindow disputed_;
+  /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
+  /// of the middle of the background.
+  Vector6d followed_ = Vector6d::Zero();
   double pinned_s_ = -1e9;                          // last time the background showed every direction
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
   double in_front_s_ = -1e9;                        // last time something was

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/calibration/check_pose.hpp"
+#include "core/drift/posture_mean.hpp"
 
 namespace calibrd {
 
@@ -33,6 +34,10 @@ class RobotWord {
   /// ... or do so no longer.
   bool is_against_no_more() const;
 
+  /// The last postures together, none of which says much, say that the robot is not where it should be: this
+  /// far off. Nothing: they do not.
+  std::optional<RobotShift> creep() const;
+
   static constexpr double kOfNow_s = 2;  ///< a comparison is of now for so long
 
  private:
@@ -42,6 +47,7 @@ class RobotWord {
   std::vector<double> posture_;  // that is looked at
   double posture_sigmas_ = 0;    // mean of its comparisons
   int posture_checks_ = 0;
+  PostureMean mean_;
 };
 
 }  // namespace calibrd

@@ -137,6 +137,36 @@ TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
 }
 
+TEST_F(BeforeAWall, WhatNoPostureTellsManyTellTogether) {
+  moved_ = along_the_wall(0.0022);
+  for (int posture = 0; posture < 8; ++posture) {
+    watch_for(1);
+    check(moved_);
+  }
+  EXPECT_NE(watch_for(0.1), DriftVerdict::sensor_moved);
+  for (int posture = 0; posture < 8; ++posture) {
+    watch_for(1);
+    check(moved_);
+  }
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::sensor_moved);
+}
+
+TEST_F(BeforeAWall, WhatTheModelMayMakeOfManyPosturesIsNoMove) {
+  for (int posture = 0; posture < 40; ++posture) {
+    watch_for(1);
+    check(along_the_wall(posture % 2 == 0 ? 0.0025 : -0.0015));
+  }
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::in_place);
+}
+
+TEST_F(RobotsWord, ManyPosturesTogetherSayNothingAgainstABackgroundThatStands) {
+  for (int posture = 0; posture < 20; ++posture) {
+    watch_for(1);
+    check(shifted(0.0025, 0, 0));
+  }
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::in_place);
+}
+
 TEST_F(BeforeAWall, WhatSlidesAlongItIsNoEvidenceOfAMove) {
   watch_for(1);
   room_.hidden_share = 0.85;

@@ -92,6 +92,21 @@ TEST_F(AbsorbedBox, OnceTheRobotHasSaidThatTheSensorStandsIsBackground) {
   EXPECT_TRUE(watch_.is_in_place());
 }
 
+TEST_F(AbsorbedBox, WhenItWasTheSensorAfterAllTheRobotTellsLater) {
+  watch_for(4);
+  moved_.tail<3>() = 0.0025 * true_T_base_sensor().linear().col(0);  // no posture denies that it stands
+  for (int posture = 0; posture < 12; ++posture) {
+    watch_for(1);
+    check(moved_);
+  }
+  EXPECT_TRUE(watch_.is_in_place()) << "taken for a push";
+  for (int posture = 0; posture < 12; ++posture) {
+    watch_for(1);
+    check(moved_);
+  }
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::sensor_moved);
+}
+
 TEST_F(PushedBox, ASlideThatOneThingAloneShowsIsNoEvidenceThatTheSensorStands) {
   watch_for(4);
   EXPECT_TRUE(watch_.is_in_place());

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/drift/posture_mean.hpp"
+
+#include <gtest/gtest.h>
+
+namespace calibrd {
+namespace {
+
+constexpr double kOwn_m = 1e-3, kOwn_rad = 1e-3, kPose_m = 5e-4;
+
+/// The robot looks displaced by `delta` (about the base's origin) where its surface is at `middle_base`.
+PoseCheck looks_displaced(const Vector6d& delta, const Eigen::Vector3d& middle_base, double sigmas = 1) {
+  PoseCheck check;
+  check.enough_evidence = check.agrees = true;
+  check.shift_sigmas = sigmas;
+  check.middle_base = middle_base;
+  check.turn_shift = shift_of_point(middle_base) * delta;
+  check.pose_covariance.setZero();
+  check.pose_covariance.diagonal().tail<3>().setConstant(kPose_m * kPose_m);
+  Vector6d own;
+  own << Eigen::Vector3d::Constant(kOwn_rad * kOwn_rad), Eigen::Vector3d::Constant(kOwn_m * kOwn_m);
+  check.turn_shift_covariance = check.pose_covariance;
+  check.turn_shift_covariance.diagonal() += own;
+  return check;
+}
+
+Vector6d some_delta() {
+  Vector6d delta;
+  delta << 1e-3, -5e-4, 2e-4, 1e-3, 5e-4, -2e-3;
+  return delta;
+}
+
+Eigen::Vector3d place(int posture) { return {0.5 + 0.1 * (posture % 3), 0.1 * (posture % 5), 0.8}; }
+
+PostureMean mean_of(int postures, const Vector6d& delta, double sigmas = 1) {
+  PostureMean mean;
+  for (int i = 0; i < postures; ++i) {
+    mean.add(looks_displaced(delta, place(i), sigmas));
+    mean.end_posture();
+  }
+  return mean;
+}
+
+TEST(PostureMean, OfFewPosturesSaysNothing) {
+  EXPECT_FALSE(mean_of(11, some_delta()).shift());
+  EXPECT_TRUE(mean_of(12, some_delta()).shift());
+}
+
+TEST(PostureMean, WhatPosturesShareIsFoundWhereverTheyAre) {
+  const auto shift = mean_of(20, some_delta()).shift();
+  ASSERT_TRUE(shift);
+  const Vector6d expected = shift_of_point(shift->middle_base) * some_delta();
+  EXPECT_TRUE(shift->turn_shift.isApprox(expected, 1e-6));
+}
+
+TEST(PostureMean, TheirOwnErrorsAverageOutAndThatOfThePoseDoesNot) {
+  const double few = mean_of(12, some_delta()).shift()->covariance(5, 5);
+  const double many = mean_of(200, some_delta()).shift()->covariance(5, 5);
+  EXPECT_LT(many, 0.5 * kOwn_m * kOwn_m);
+  EXPECT_LE(many, few);
+  EXPECT_GT(many, kPose_m * kPose_m);
+}
+
+TEST(PostureMean, OneThatLooksFarOffIsLeftOut) { EXPECT_FALSE(mean_of(40, some_delta(), 3.5).shift()); }
+
+TEST(PostureMean, ManyComparisonsOfOnePostureAreOne) {
+  PostureMean mean;
+  for (int i = 0; i < 500; ++i) mean.add(looks_displaced(some_delta(), place(0)));
+  mean.end_posture();
+  EXPECT_FALSE(mean.shift());
+}
+
+TEST(PostureMean, ForgetsWhatIsLongAgo) {
+  PostureMean mean = mean_of(30, some_delta());
+  for (int i = 0; i < 60; ++i) {
+    mean.add(looks_displaced(Vector6d::Zero(), place(i)));
+    mean.end_posture();
+  }
+  EXPECT_LT(mean.shift()->turn_shift.norm(), 1e-5);
+}
+
+}  // namespace
+}  // namespace calibrd
