@@ -13,7 +13,10 @@ constexpr auto kBusyRetry = 500ms;  // another calibration of the sensor is unde
 constexpr auto kLongWait = 1h;
 constexpr auto kCandidateLook = 1s;  // whether it still holds
 constexpr int kMovesWithoutPause = 4;
-constexpr int kEagerAttempts = 2;  // the quick one and the full one follow each other at once
+/// One posture may tell too little; two seldom do, and all that a calibration asks for take long to come.
+constexpr int kQuickAttempts = 2;
+constexpr double kMorePatience = 1.5;               // of the second
+constexpr int kEagerAttempts = kQuickAttempts + 1;  // these and the full one follow each other at once
 
 }  // namespace
 
@@ -99,8 +102,8 @@ void Healer::on_choice(const std::string& sensor_id) {
 
 bool Healer::tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const {
   const auto& result = calibration.result;
-  if (patient.attempts != 1 || calibration.status != api::JobStatus::succeeded || !calibration.activate)
-    return false;
+  const bool was_quick = patient.attempts >= 1 && patient.attempts <= kQuickAttempts;
+  if (!was_quick || calibration.status != api::JobStatus::succeeded || !calibration.activate) return false;
   return result && (result->sigma_position_m > settings_.quick_sigma_m ||
                     result->sigma_rotation_rad > settings_.quick_sigma_rad);
 }
@@ -174,9 +177,9 @@ api::CalibrationRequest Healer::next_request(const std::string& sensor_id) const
   request.sensor_id = sensor_id;
   request.activate = settings_.mode == HealingMode::automatic;
   request.after_move = patient.drifted;
-  if (patient.drifted && patient.attempts == 0) {
+  if (patient.drifted && patient.attempts < kQuickAttempts) {
     request.postures = settings_.postures;
-    request.patience = settings_.patience;
+    request.patience = patient.attempts == 0 ? settings_.patience : kMorePatience * settings_.patience;
   }
   return request;
 }

@@ -30,9 +30,10 @@ struct HealerSettings {
   double quick_sigma_m = 0.001, quick_sigma_rad = 0.001;
 };
 
-/// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, or tells
-/// less than it should, with all the postures a calibration asks for; after failures again, with pauses that
-/// grow. A sensor that moves again and again is given pauses, too. Safe to call from any thread.
+/// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, once
+/// more with a little more patience; when that fails, too, or tells less than it should, with all the
+/// postures a calibration asks for; after failures again, with pauses that grow. A sensor that moves again
+/// and again is given pauses, too. Safe to call from any thread.
 class Healer {
  public:
   /// Starts a calibration of a sensor; may fail, because one is under way or the cell is stopping.

@@ -11,6 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr double kRough_m = 0.002;  // sigma of a pose that should be made better
+
 /// A healer whose calibrations are started by hand-written numbers.
 class Healing : public ::testing::Test {
  protected:
@@ -63,6 +65,23 @@ class Healing : public ::testing::Test {
     report.finished = std::chrono::system_clock::now();
     healer_->on_calibration(report, Clock::now());
   }
+  /// The sensor moves, and the first attempt finds its pose.
+  void move_and_heal(double sigma_m = 1e-4) {
+    const auto attempt = requests_.size() + 1;
+    set_state(api::PoseState::drifted);
+    ASSERT_TRUE(wait_for(attempt));
+    set_state(api::PoseState::calibrated);
+    end("c" + std::to_string(attempt), api::JobStatus::succeeded, true, sigma_m);
+  }
+  /// The sensor moves, and all that is tried without a pause fails.
+  void move_and_fail() {
+    set_state(api::PoseState::drifted);
+    for (std::size_t attempt = 1; attempt <= kWithoutPause; ++attempt) {
+      ASSERT_TRUE(wait_for(attempt));
+      end("c" + std::to_string(attempt), api::JobStatus::failed);
+    }
+  }
+  static constexpr std::size_t kWithoutPause = 3;
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -83,35 +102,31 @@ TEST_F(Healing, MovedSensorIsCalibratedAtOnceFromWhatIsAtHand) {
   EXPECT_TRUE(requests_[0].patience && requests_[0].after_move && requests_[0].activate);
 }
 
-TEST_F(Healing, FailedQuickAttemptIsFollowedByAFullOneAndThenByAPause) {
+TEST_F(Healing, FailedQuickAttemptIsFollowedByAMorePatientThenAFullOneThenAPause) {
   begin(HealingMode::automatic);
   set_state(api::PoseState::drifted);
   ASSERT_TRUE(wait_for(1));
   end("c1", api::JobStatus::failed);
   ASSERT_TRUE(wait_for(2));
-  EXPECT_FALSE(requests_[1].patience || requests_[1].postures);
+  ASSERT_TRUE(requests_[1].patience && requests_[1].postures);
+  EXPECT_GT(*requests_[1].patience, *requests_[0].patience);
   end("c2", api::JobStatus::failed);
-  EXPECT_FALSE(wait_for(3, 300ms));
+  ASSERT_TRUE(wait_for(3));
+  EXPECT_FALSE(requests_[2].patience || requests_[2].postures);
+  end("c3", api::JobStatus::failed);
+  EXPECT_FALSE(wait_for(4, 300ms));
 }
 
 TEST_F(Healing, SensorThatIsKnockedAgainAndAgainIsNotCalibratedWithoutEnd) {
   begin(HealingMode::automatic);
-  for (int knock = 1; knock <= 4; ++knock) {
-    set_state(api::PoseState::drifted);
-    ASSERT_TRUE(wait_for(static_cast<std::size_t>(knock)));
-    end(std::string("c").append(std::to_string(knock)), api::JobStatus::succeeded);
-    set_state(api::PoseState::calibrated);
-  }
+  for (int knock = 1; knock <= 4; ++knock) ASSERT_NO_FATAL_FAILURE(move_and_heal());
   set_state(api::PoseState::drifted);
   EXPECT_FALSE(wait_for(5, 300ms));
 }
 
 TEST_F(Healing, QuickResultThatTellsTooLittleIsFollowedByAFullCalibration) {
   begin(HealingMode::automatic, 0ms);
-  set_state(api::PoseState::drifted);
-  ASSERT_TRUE(wait_for(1));
-  set_state(api::PoseState::calibrated);
-  end("c1", api::JobStatus::succeeded, true, 0.002);
+  ASSERT_NO_FATAL_FAILURE(move_and_heal(kRough_m));
   ASSERT_TRUE(wait_for(2));
   EXPECT_FALSE(requests_[1].patience || requests_[1].postures || requests_[1].after_move);
   end("c2", api::JobStatus::failed);
@@ -120,19 +135,13 @@ TEST_F(Healing, QuickResultThatTellsTooLittleIsFollowedByAFullCalibration) {
 
 TEST_F(Healing, QuickResultThatIsCertainIsLeftAlone) {
   begin(HealingMode::automatic, 0ms);
-  set_state(api::PoseState::drifted);
-  ASSERT_TRUE(wait_for(1));
-  set_state(api::PoseState::calibrated);
-  end("c1", api::JobStatus::succeeded);
+  ASSERT_NO_FATAL_FAILURE(move_and_heal());
   EXPECT_FALSE(wait_for(2, 300ms));
 }
 
 TEST_F(Healing, SensorThatMovesWhileItsPoseIsMadeBetterIsHealedAtOnce) {
   begin(HealingMode::automatic, 0ms);
-  set_state(api::PoseState::drifted);
-  ASSERT_TRUE(wait_for(1));
-  set_state(api::PoseState::calibrated);
-  end("c1", api::JobStatus::succeeded, true, 0.002);
+  ASSERT_NO_FATAL_FAILURE(move_and_heal(kRough_m));
   ASSERT_TRUE(wait_for(2));
   set_state(api::PoseState::drifted);
   ASSERT_TRUE(wait_for(3));
@@ -144,10 +153,7 @@ TEST_F(Healing, PoseThatSomebodyHasChosenIsNotMadeBetterUnasked) {
   begin(HealingMode::automatic, 300ms);
   for (const bool by_calibration : {true, false}) {
     const auto before = requests_.size();
-    set_state(api::PoseState::drifted);
-    ASSERT_TRUE(wait_for(before + 1));
-    set_state(api::PoseState::calibrated);
-    end(std::string("c").append(std::to_string(before + 1)), api::JobStatus::succeeded, true, 0.002);
+    ASSERT_NO_FATAL_FAILURE(move_and_heal(kRough_m));
     if (by_calibration)
       end("mine", api::JobStatus::succeeded);
     else
@@ -159,11 +165,7 @@ TEST_F(Healing, PoseThatSomebodyHasChosenIsNotMadeBetterUnasked) {
 TEST_F(Healing, SaysWhenItTriesAgain) {
   begin(HealingMode::automatic);
   EXPECT_FALSE(healer_->next_attempt("eye"));
-  set_state(api::PoseState::drifted);
-  ASSERT_TRUE(wait_for(1));
-  end("c1", api::JobStatus::failed);
-  ASSERT_TRUE(wait_for(2));
-  end("c2", api::JobStatus::failed);
+  ASSERT_NO_FATAL_FAILURE(move_and_fail());
   ASSERT_TRUE(healer_->next_attempt("eye"));
   EXPECT_GT(*healer_->next_attempt("eye"), Clock::now() + 9min);
 }
@@ -207,13 +209,9 @@ TEST_F(Healing, CalibrationUnderWayIsWaitedFor) {
 
 TEST_F(Healing, PoseThatIsGoodAgainEndsTheAttempts) {
   begin(HealingMode::automatic, 200ms);
-  set_state(api::PoseState::drifted);
-  ASSERT_TRUE(wait_for(1));
-  end("c1", api::JobStatus::failed);
-  ASSERT_TRUE(wait_for(2));
-  end("c2", api::JobStatus::failed);
+  ASSERT_NO_FATAL_FAILURE(move_and_fail());
   set_state(api::PoseState::calibrated);
-  EXPECT_FALSE(wait_for(3, 500ms));
+  EXPECT_FALSE(wait_for(kWithoutPause + 1, 500ms));
 }
 
 }  // namespace
