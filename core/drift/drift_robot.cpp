@@ -16,7 +16,7 @@ constexpr double kDenial = 16;
 /// The sensor's own move may be what the robot shows when it leaves no more than this share of it (χ²)
 /// unexplained.
 constexpr double kUnexplainedShare = 0.4;
-/// A background that shows every direction now and then is the one to tell.
+/// A background that shows every direction well now and then is the one to tell.
 constexpr double kUnpinned_s = 30;
 constexpr double kMeanFrames = 7;  // that the mean of the test is of
 
@@ -36,10 +36,10 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
   }
 }
 
-/// Along a direction that the background has not shown for long, or in which it was learnt anew, where only
-/// the robot can tell. Elsewhere a shift so small is the model's.
+/// Along a direction that the background has hardly shown for long, or in which it was learnt anew, where
+/// only the robot can tell. Elsewhere a shift so small is the model's.
 bool DriftWatch::has_crept() const {
-  const bool is_shown = has_background() && frame_s_ - pinned_s_ < kUnpinned_s;
+  const bool is_shown = has_background() && frame_s_ - finely_pinned_s_ < kUnpinned_s;
   if (is_shown && followed_.isZero()) return false;
   const auto creep = robot_word_.creep();
   return creep && is_robots_shift_possible(*creep);

@@ -18,6 +18,8 @@ constexpr double kLeastLeft = 0.1;  // share of it that is where it was
 constexpr double kLeastSame = 0.8;
 constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
+/// A background that shows every direction so well finds a creep by itself before it is worth a word.
+constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
 constexpr double kRobotHolds_s = 10;
 constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
@@ -68,7 +70,7 @@ void DriftWatch::start_over() {
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
   quiet_frames_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = disputed_since_s_ = -1;
-  evidence_s_ = pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
+  evidence_s_ = pinned_s_ = finely_pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   followed_.setZero();
   absorbed_s_ = frame_s_;
@@ -121,9 +123,12 @@ void DriftWatch::test(const BackgroundObservation& observation) {
                  move * observation.supported_shift,
                  move * observation.supported_covariance * move.transpose(), observation.common_share};
   test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
-  const bool is_pinned = pins(innovation_->supported_covariance);
+  const auto& supported = innovation_->supported_covariance;
+  const bool is_pinned = pins(supported, settings_.pinned_m, settings_.pinned_rad);
   if (is_pinned) pinned_s_ = frame_s_;
-  follow_dispute(observation, !is_pinned && pins(innovation_->covariance));
+  if (pins(supported, kFinely_m, kFinely_rad)) finely_pinned_s_ = frame_s_;
+  follow_dispute(observation,
+                 !is_pinned && pins(innovation_->covariance, settings_.pinned_m, settings_.pinned_rad));
   count_quiet();
   last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
@@ -135,10 +140,10 @@ void DriftWatch::test(const BackgroundObservation& observation) {
 
 /// What one frame shows of every direction is enough to say that the sensor stands. What the test tolerates,
 /// because all frames have it in common, is not known either.
-bool DriftWatch::pins(const Matrix6d& covariance) const {
+bool DriftWatch::pins(const Matrix6d& covariance, double within_m, double within_rad) const {
   const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
-  return tolerated * worst_sigma(covariance.topLeftCorner<3, 3>()) < settings_.pinned_rad &&
-         tolerated * worst_sigma(covariance.bottomRightCorner<3, 3>()) < settings_.pinned_m;
+  return tolerated * worst_sigma(covariance.topLeftCorner<3, 3>()) < within_rad &&
+         tolerated * worst_sigma(covariance.bottomRightCorner<3, 3>()) < within_m;
 }
 
 /// A shift that one thing in view alone shows: either it was pushed, or the sensor has slid.

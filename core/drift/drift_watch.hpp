@@ -81,7 +81,7 @@ class DriftWatch {
   bool lies_elsewhere(const BackgroundAlignment& found) const;
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
-  bool pins(const Matrix6d& covariance) const;
+  bool pins(const Matrix6d& covariance, double within_m, double within_rad) const;
   void follow_dispute(const BackgroundObservation& observation, bool is_disputed);
   void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
@@ -130,7 +130,8 @@ class DriftWatch {
   /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
   /// of the middle of the background.
   Vector6d followed_ = Vector6d::Zero();
-  double pinned_s_ = -1e9;                          // last time the background showed every direction
+  double pinned_s_ = -1e9;                          // last time the background showed every direction ...
+  double finely_pinned_s_ = -1e9;                   // ... and so well that it would tell of a creep itself
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
   double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;

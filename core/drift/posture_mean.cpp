@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kForget = 0.1;  // of what is known, with each posture
 constexpr int kLeastPostures = 12;
-/// A posture that looks farther off is the business of RobotWord's CUSUM, and would linger here.
-constexpr double kMostSigmas = 2.7;
 /// What postures of a region of the workspace have in common is not averaged out.
 constexpr double kFloor_m = 3e-4, kFloor_rad = 3e-4;
 
@@ -28,7 +26,8 @@ void PostureMean::add(const PoseCheck& check) {
 void PostureMean::end_posture() {
   const Posture ended = posture_;
   posture_ = {};
-  if (ended.checks == 0 || ended.newest.shift_sigmas > kMostSigmas) return;
+  // One that disagrees is the business of RobotWord's CUSUM, and would linger here.
+  if (ended.checks == 0 || !ended.newest.agrees) return;
   const Matrix6d move = shift_of_point(-ended.newest.middle_base);
   pose_covariance_ = move * ended.newest.pose_covariance * move.transpose();
   const Matrix6d own =
