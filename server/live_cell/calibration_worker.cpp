@@ -16,6 +16,19 @@ namespace {
 constexpr auto kLongWait = std::chrono::hours(1);
 constexpr auto kImpatience = std::chrono::milliseconds(50);  // how often is looked whether a posture has come
 
+/// What a quick attempt must know of the pose: the few views of one lie beyond twice their sigma now and
+/// then, and 5 mm are too much to be served as good.
+constexpr double kQuickSigma_m = 0.002, kQuickSigma_rad = 0.002;
+
+void hold_to_quick_limits(CalibrationResult& result) {
+  if (result.verdict != Verdict::accepted) return;
+  if (result.sigma_position_m <= kQuickSigma_m && result.sigma_rotation_rad <= kQuickSigma_rad) return;
+  result.verdict = Verdict::uncertain;
+  const bool is_position = result.sigma_position_m > kQuickSigma_m;
+  result.reasons.push_back({is_position ? "position_uncertain" : "rotation_uncertain",
+                            "the few views of a quick attempt tell less than 2 mm and 2 mrad; more follow"});
+}
+
 bool is_accepted(const CalibrationResult& result) {
   return result.verdict == Verdict::accepted && result.T_base_sensor;
 }
@@ -124,6 +137,7 @@ void CalibrationJobs::compute(const JobPointer& job) {
     job->report.evidence = std::move(made_from);
   }
   auto result = calibrate(job, views);
+  if (job->patient_until) hold_to_quick_limits(result);
   {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) return;  // the store calls it interrupted when it is opened again

@@ -15,7 +15,6 @@ constexpr auto kCandidateLook = 1s;  // whether it still holds
 constexpr int kMovesWithoutPause = 4;
 /// One posture may tell too little; two seldom do, and all that a calibration asks for take long to come.
 constexpr int kQuickAttempts = 2;
-constexpr double kMorePatience = 1.5;               // of the second
 constexpr int kEagerAttempts = kQuickAttempts + 1;  // these and the full one follow each other at once
 
 }  // namespace
@@ -179,7 +178,7 @@ api::CalibrationRequest Healer::next_request(const std::string& sensor_id) const
   request.after_move = patient.drifted;
   if (patient.drifted && patient.attempts < kQuickAttempts) {
     request.postures = settings_.postures;
-    request.patience = patient.attempts == 0 ? settings_.patience : kMorePatience * settings_.patience;
+    request.patience = settings_.patience;
   }
   return request;
 }

@@ -21,8 +21,8 @@ const char* name_of(HealingMode mode);
 
 struct HealerSettings {
   HealingMode mode = HealingMode::automatic;
-  int postures = 3;                                     ///< of the first, quick attempt, at most
-  api::Seconds patience{1.5};                           ///< how long it collects once it has one posture
+  int postures = 3;                                     ///< of a quick attempt, at most
+  api::Seconds patience{2.0};                           ///< how long it collects once it has one posture
   Clock::duration cooldown = std::chrono::seconds(10);  ///< after a failed attempt; doubles up to ...
   Clock::duration longest_cooldown = std::chrono::minutes(10);
   Clock::duration calm_after = std::chrono::minutes(10);  ///< ... and starts anew after so long without one
@@ -31,8 +31,8 @@ struct HealerSettings {
 };
 
 /// Has sensors calibrated again that have moved: at once from the postures at hand; when that fails, once
-/// more with a little more patience; when that fails, too, or tells less than it should, with all the
-/// postures a calibration asks for; after failures again, with pauses that grow. A sensor that moves again
+/// more so; when that fails, too, or tells less than it should, with all the postures a calibration asks for;
+/// after failures again, with pauses that grow. A sensor that moves again
 /// and again is given pauses, too. Safe to call from any thread.
 class Healer {
  public:

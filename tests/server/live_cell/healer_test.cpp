@@ -102,14 +102,13 @@ TEST_F(Healing, MovedSensorIsCalibratedAtOnceFromWhatIsAtHand) {
   EXPECT_TRUE(requests_[0].patience && requests_[0].after_move && requests_[0].activate);
 }
 
-TEST_F(Healing, FailedQuickAttemptIsFollowedByAMorePatientThenAFullOneThenAPause) {
+TEST_F(Healing, FailedQuickAttemptIsFollowedByAnotherThenAFullOneThenAPause) {
   begin(HealingMode::automatic);
   set_state(api::PoseState::drifted);
   ASSERT_TRUE(wait_for(1));
   end("c1", api::JobStatus::failed);
   ASSERT_TRUE(wait_for(2));
-  ASSERT_TRUE(requests_[1].patience && requests_[1].postures);
-  EXPECT_GT(*requests_[1].patience, *requests_[0].patience);
+  EXPECT_TRUE(requests_[1].patience && requests_[1].postures);
   end("c2", api::JobStatus::failed);
   ASSERT_TRUE(wait_for(3));
   EXPECT_FALSE(requests_[2].patience || requests_[2].postures);

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // Where a calibration starts from: the request, the last pose, the configured guess, nothing.
+#include <tuple>
+
 #include "tests/server/live_cell/cell_fixture.hpp"
 
 namespace calibrd {
@@ -65,6 +67,28 @@ TEST_F(StartPose, WithoutOneImpatienceWaitsForTheSecondPosture) {
   EXPECT_EQ(job(id).status, api::JobStatus::collecting);
   move_until_it_ends(id);
   EXPECT_EQ(job(id).result->views, 2);
+}
+
+TEST_F(StartPose, WithImpatienceTheResultMustBeMoreCertainToBeAccepted) {
+  double sigma_m = 0;
+  on_calibrate_ = [&](auto views, const CalibrationSettings&) {
+    auto result = accepted(views);
+    result.sigma_position_m = sigma_m;
+    result.sigma_rotation_rad = 1e-4;
+    return result;
+  };
+  start();
+  for (const auto& [sigma, impatient, expected] :
+       {std::tuple{0.0015, true, api::JobStatus::succeeded}, std::tuple{0.0025, true, api::JobStatus::failed},
+        std::tuple{0.0025, false, api::JobStatus::succeeded}}) {
+    sigma_m = sigma;
+    auto asked = request(2);
+    if (impatient) asked.patience = api::Seconds(60);
+    const auto started = cell_->start_calibration(asked);
+    ASSERT_TRUE(started);
+    move_until_it_ends(started->id);
+    EXPECT_EQ(job(started->id).status, expected) << sigma << impatient;
+  }
 }
 
 TEST_F(StartPose, MayBeALastPoseThatIsNotVerified) {
