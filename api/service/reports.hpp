@@ -181,7 +181,8 @@ struct CalibrationRequest {
   bool activate = true;
   std::string idempotency_key;  ///< empty: none
   std::string fingerprint;      ///< equal for requests that ask for the same
-  /// How long to go on collecting once a posture has been seen; nothing: until all have been.
+  /// How long to wait for more than two postures; two and a half times as long for more than one. Nothing:
+  /// until all have been seen.
   std::optional<Seconds> patience = {};
   bool after_move = false;  ///< the sensor has moved: start from where its background says it is
 };

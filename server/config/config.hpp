@@ -91,7 +91,7 @@ struct DriftConfig {
   Duration absorb_after{60'000};
   std::string healing = "automatic";
   int healing_postures = 3;
-  Duration healing_patience{2000};
+  Duration healing_patience{1500};
   Duration healing_cooldown{10'000};
 };
 

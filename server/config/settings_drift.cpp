@@ -25,7 +25,9 @@ void declare_drift(std::vector<Setting>& table) {
   key("healing_postures", &DriftConfig::healing_postures, integer(1, 50), "",
       "Postures of the first two, quick attempts, at most. Later ones collect calibration.postures.");
   key("healing_patience", &DriftConfig::healing_patience, duration(0ms, 10min), "",
-      "A quick attempt begins after this time with the postures there are, if there is one.");
+      "A quick attempt begins after this time with the postures there are, if there are two; with one after "
+      "two and "
+      "a half times as long.");
   key("healing_cooldown", &DriftConfig::healing_cooldown, duration(100ms, 24h), "",
       "Pause after failed attempts, before a quick result is made better, and for a sensor that moves for "
       "the fifth "

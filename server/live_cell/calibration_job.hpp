@@ -22,7 +22,8 @@ struct CalibrationJobs::Job {
   std::optional<Pose> guess;
   std::shared_ptr<CollectTask> task;
   Clock::time_point deadline;                      ///< of collecting
-  std::optional<Clock::time_point> patient_until;  ///< then what has been seen is enough
+  std::optional<Clock::time_point> patient_until;  ///< then two postures are enough ...
+  Clock::time_point content_with_one_at;           ///< ... and then whatever has been seen
   Clock::time_point seen_at;                       ///< when the last of its views was taken
   Surroundings surroundings;                       ///< that its views show, once it is accepted
   std::atomic<bool> cancelled{false};

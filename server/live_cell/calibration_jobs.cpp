@@ -111,8 +111,11 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
-  if (request.patience)
-    job->patient_until = Clock::now() + std::chrono::duration_cast<Clock::duration>(*request.patience);
+  if (request.patience) {
+    const auto patience = std::chrono::duration_cast<Clock::duration>(*request.patience);
+    job->patient_until = Clock::now() + patience;
+    job->content_with_one_at = *job->patient_until + 3 * patience / 2;
+  }
   job->task = std::make_shared<CollectTask>(
       collector,
       [this] {

@@ -86,9 +86,11 @@ void CalibrationJobs::run() {
 
 /// Jobs that would rather begin than wait; the caller holds mutex_.
 void CalibrationJobs::end_patience(Clock::time_point now) {
-  for (const auto& [id, job] : jobs_)
-    if (job->patient_until && now >= *job->patient_until && job->task->is_open())
-      job->task->settle_for_less(least_postures(job->guess));
+  for (const auto& [id, job] : jobs_) {
+    if (!job->patient_until || now < *job->patient_until || !job->task->is_open()) continue;
+    const int least = least_postures(job->guess);  // one tells little: another may be on its way
+    job->task->settle_for_less(now < job->content_with_one_at ? std::max(2, least) : least);
+  }
 }
 
 /// The caller holds mutex_.

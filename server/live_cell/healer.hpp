@@ -22,7 +22,7 @@ const char* name_of(HealingMode mode);
 struct HealerSettings {
   HealingMode mode = HealingMode::automatic;
   int postures = 3;                                     ///< of a quick attempt, at most
-  api::Seconds patience{2.0};                           ///< how long it collects once it has one posture
+  api::Seconds patience{1.5};                           ///< how long it collects: see CalibrationRequest
   Clock::duration cooldown = std::chrono::seconds(10);  ///< after a failed attempt; doubles up to ...
   Clock::duration longest_cooldown = std::chrono::minutes(10);
   Clock::duration calm_after = std::chrono::minutes(10);  ///< ... and starts anew after so long without one

@@ -69,6 +69,22 @@ TEST_F(StartPose, WithoutOneImpatienceWaitsForTheSecondPosture) {
   EXPECT_EQ(job(id).result->views, 2);
 }
 
+TEST_F(StartPose, ImpatienceWaitsForASecondPostureForAWhile) {
+  start();
+  auto impatient = request(3);
+  impatient.patience = api::Seconds(0.4);
+  const auto begin = Clock::now();
+  const auto id = cell_->start_calibration(impatient)->id;
+  repeat_until(
+      [&] {
+        stand(0);
+        show();
+      },
+      [&] { return job(id).finished.has_value(); });
+  EXPECT_GE(Clock::now() - begin, std::chrono::milliseconds(1000));
+  EXPECT_EQ(job(id).result->views, 1);
+}
+
 TEST_F(StartPose, WithImpatienceTheResultMustBeMoreCertainToBeAccepted) {
   double sigma_m = 0;
   on_calibrate_ = [&](auto views, const CalibrationSettings&) {
