@@ -75,8 +75,8 @@ void DriftWatch::absorb_what_was_pushed(double now_s) {
     const bool is_seen = matcher_.states()[i] == CellState::same;
     chosen[i] = is_seen && disputed_.holds(x, y) && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
   }
-  take(chosen);
-  if (innovation_) followed_ += innovation_->turn_shift;
+  if (!take(chosen)) return;
+  followed_ += disputed_shift_;
   disputed_since_s_ = -1;
 }
 
@@ -94,12 +94,14 @@ void DriftWatch::absorb_what_moved_as_one(double now_s) {
   denied_since_s_ = now_s;
 }
 
-void DriftWatch::take(const std::vector<std::uint8_t>& chosen) {
-  if (std::ranges::count(chosen, std::uint8_t{1}) == 0) return;
+/// False: there was nothing to take.
+bool DriftWatch::take(const std::vector<std::uint8_t>& chosen) {
+  if (std::ranges::count(chosen, std::uint8_t{1}) == 0) return false;
   auto depth_m = scene_.mean_depth_m();  // less what the range reads otherwise than when the rest was learnt
   for (float& z : depth_m) z -= static_cast<float>(offset_m_);
   map_.relearn(depth_m, scene_.mean_frames(), chosen);
   matcher_.refresh();
+  return true;
 }
 
 }  // namespace calibrd

@@ -18,12 +18,13 @@ constexpr double kDenial = 16;
 constexpr double kUnexplainedShare = 0.4;
 /// A background that shows every direction well now and then is the one to tell.
 constexpr double kUnpinned_s = 30;
-constexpr double kMeanFrames = 7;  // that the mean of the test is of
+constexpr double kMostFollowed = 1.5;  // of what was followed, the robot may show: it lags, and is uncertain
+constexpr double kMeanFrames = 7;      // that the mean of the test is of
 
 }  // namespace
 
-void DriftWatch::add_check(const PoseCheck& check, double now_s) {
-  robot_word_.add(check, joints_, now_s);
+void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joints_rad, double now_s) {
+  robot_word_.add(check, joints_rad, now_s);
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
   if (model_wrong_ || moved_) return;
   if (robot_word_.is_against()) {
@@ -40,9 +41,23 @@ void DriftWatch::add_check(const PoseCheck& check, double now_s) {
 /// only the robot can tell. Elsewhere a shift so small is the model's.
 bool DriftWatch::has_crept() const {
   const bool is_shown = has_background() && frame_s_ - finely_pinned_s_ < kUnpinned_s;
-  if (is_shown && followed_.isZero()) return false;
   const auto creep = robot_word_.creep();
-  return creep && is_robots_shift_possible(*creep);
+  if (!creep || (is_shown && !is_what_was_followed(*creep))) return false;
+  return is_robots_shift_possible(*creep);
+}
+
+/// What the robot shows is, but for what is uncertain of it, some part of what the background has followed.
+bool DriftWatch::is_what_was_followed(const RobotShift& robot) const {
+  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_.translation()) *
+                        shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
+  const Vector6d followed = move * followed_;
+  const Eigen::LDLT<Matrix6d> solver(robot.covariance);
+  const Vector6d weight = solver.solve(followed);
+  const double squares = followed.dot(weight);
+  if (!(squares > 0)) return false;
+  const double share = std::clamp(robot.turn_shift.dot(weight) / squares, 0.0, kMostFollowed);
+  const Vector6d left = robot.turn_shift - share * followed;
+  return left.dot(solver.solve(left)) < kUnexplainedShare * std::pow(robot.sigmas, 2);
 }
 
 /// For each hypothesis how badly the robot's apparent shift fits it.

@@ -20,6 +20,7 @@ constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
 /// A background that shows every direction so well finds a creep by itself before it is worth a word.
 constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
+constexpr double kNewestDisputed = 1.0 / 30;  // weight of a frame in the mean of a disputed shift
 constexpr double kRobotHolds_s = 10;
 constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
@@ -81,7 +82,6 @@ void DriftWatch::start_over() {
 const DriftReport& DriftWatch::add_frame(const View& frame) {
   if (frame.stamp_s - frame_s_ > kGap_s) on_gap();
   frame_s_ = frame.stamp_s;
-  if (!frame.joint_positions_rad.empty()) joints_ = frame.joint_positions_rad;
   if (learnt_s_ < 0) learnt_s_ = frame_s_;
   ++frames_;
   report_.has_background = has_background();
@@ -154,7 +154,11 @@ void DriftWatch::follow_dispute(const BackgroundObservation& observation, bool i
   }
   disputed_ = *observation.unsupported;
   disputed_s_ = frame_s_;
-  if (disputed_since_s_ < 0) disputed_since_s_ = frame_s_;
+  if (disputed_since_s_ < 0) {
+    disputed_since_s_ = frame_s_;
+    disputed_shift_ = innovation_->turn_shift;
+  }
+  disputed_shift_ += kNewestDisputed * (innovation_->turn_shift - disputed_shift_);
 }
 
 /// Frames on end that show the background where it was. The sequential test needs some frames to find a move,

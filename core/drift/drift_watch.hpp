@@ -46,8 +46,9 @@ class DriftWatch {
 
   /// The next frame; joint_positions_rad empty when they are not known.
   const DriftReport& add_frame(const View& frame);
-  /// What a comparison of a frame with the robot said.
-  void add_check(const PoseCheck& check, double now_s);
+  /// What a comparison of a frame with the robot said, which stood as `joints_rad` say. Frames may have come
+  /// since.
+  void add_check(const PoseCheck& check, std::span<const double> joints_rad, double now_s);
 
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
@@ -91,13 +92,14 @@ class DriftWatch {
   void absorb(double now_s);
   void absorb_what_moved_as_one(double now_s);
   void absorb_what_was_pushed(double now_s);
-  void take(const std::vector<std::uint8_t>& chosen);
+  bool take(const std::vector<std::uint8_t>& chosen);
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
   void on_denial();
   bool robot_denies_the_shift(double now_s) const;
   bool is_robots_shift_possible(const RobotShift& robot) const;
   bool has_crept() const;
+  bool is_what_was_followed(const RobotShift& robot) const;
   bool is_known_to_stand() const;
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
@@ -127,6 +129,7 @@ class DriftWatch {
   double disputed_since_s_ = -1,
          disputed_s_ = -1e9;  // a shift without support shows, in the window disputed_
   CellWindow disputed_;
+  Vector6d disputed_shift_ = Vector6d::Zero();  // mean of the last frames: turn and shift of the middle
   /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
   /// of the middle of the background.
   Vector6d followed_ = Vector6d::Zero();
@@ -137,7 +140,6 @@ class DriftWatch {
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;
   bool bias_changed_ = false, model_wrong_ = false;
   RobotWord robot_word_;
-  std::vector<double> joints_;  // of the last frame
 };
 
 }  // namespace calibrd

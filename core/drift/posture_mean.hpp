@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <deque>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "core/calibration/check_pose.hpp"
 
@@ -16,12 +19,13 @@ struct RobotShift {
 };
 
 /// How far off the robot looks, as one shift of the sensor that all of the last postures share: what joint
-/// zeros and model make of one posture averages out over many, so that less shows than in one. Postures count
-/// by what they tell of each direction, older ones ever less. Without I/O.
+/// zeros and model make of one posture averages out over many, so that less shows than in one. Only
+/// postures that differ count, each once and by what it tells of each direction: of a robot that goes to and
+/// fro between a few, what the model makes of them stays. Without I/O.
 class PostureMean {
  public:
   /// A comparison of the posture that the robot stands in.
-  void add(const PoseCheck& check);
+  void add(const PoseCheck& check, std::span<const double> joints_rad);
   /// The robot has left it.
   void end_posture();
 
@@ -29,17 +33,13 @@ class PostureMean {
   std::optional<RobotShift> shift() const;
 
  private:
-  Matrix6d information_ = Matrix6d::Zero();  // about the base's origin
-  Vector6d pull_ = Vector6d::Zero();
-  Eigen::Vector3d middle_base_ = Eigen::Vector3d::Zero();  // mean of the last postures
-  Matrix6d pose_covariance_ = Matrix6d::Zero();            // about the base's origin
-  int postures_ = 0;
-
   struct Posture {
     PoseCheck newest;
     Vector6d turn_shift = Vector6d::Zero();  // mean of its comparisons, about the base's origin
+    std::vector<double> joints_rad;
     int checks = 0;
   } posture_;
+  std::deque<Posture> ended_;  // oldest first
 };
 
 }  // namespace calibrd

@@ -34,7 +34,7 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
     posture_sigmas_ = posture_checks_ = 0;
     mean_.end_posture();
   }
-  mean_.add(check);
+  mean_.add(check, joints);
   const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
   ++posture_checks_;
   posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;

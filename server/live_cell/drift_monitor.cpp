@@ -98,7 +98,7 @@ void DriftMonitor::note(const DriftReport& report, double now_s) {
 }
 
 void DriftMonitor::add_check(const View& frame, const PoseCheck& check) {
-  watch_->add_check(check, frame.stamp_s);
+  watch_->add_check(check, frame.joint_positions_rad, frame.stamp_s);
   if (check.enough_evidence && !check.agrees) passed_.clear();
   if (check.agrees && !watch_->has_background()) keep_for_background(frame);
 }

@@ -49,7 +49,7 @@ DriftVerdict WatchedSensor::see(const RunningCell::Frame& frame) {
   DepthCorrection correction = correction_;
   correction.offset_m += watch_.report().depth_offset_change_m;
   last_check_ = checker_.check(frame.view, T_base_sensor_, correction, covariance_);
-  watch_.add_check(last_check_, now_s);
+  watch_.add_check(last_check_, frame.view.joint_positions_rad, now_s);
   ++checks_;
   return watch_.report().verdict;
 }

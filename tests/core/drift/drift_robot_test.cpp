@@ -64,7 +64,7 @@ TEST_F(RobotsWord, WhereNothingIsInItsPlaceAndTheRobotNeitherTheSensorLooksElsew
   EXPECT_NE(watch_for(3), DriftVerdict::sensor_moved);  // somebody may stand before it
   PoseCheck elsewhere;
   elsewhere.enough_evidence = true;
-  watch_for(1.5, [&] { watch_.add_check(elsewhere, now_s_); });
+  watch_for(1.5, [&] { watch_.add_check(elsewhere, joints_now(), now_s_); });
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
 }
 
