@@ -10,7 +10,7 @@
 namespace calibrd {
 namespace {
 
-constexpr std::size_t kLeastPostures = 12, kMostPostures = 20;
+constexpr std::size_t kLeastPostures = 5, kMostPostures = 20;
 /// Of the joint that differs most: what is nearer is the same posture again.
 constexpr double kDiffer_rad = 0.2;
 /// What postures of a region of the workspace have in common is not averaged out.

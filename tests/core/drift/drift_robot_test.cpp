@@ -139,7 +139,7 @@ TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
 
 TEST_F(BeforeAWall, WhatNoPostureTellsManyTellTogether) {
   moved_ = along_the_wall(0.0022);
-  for (int posture = 0; posture < 8; ++posture) {
+  for (int posture = 0; posture < 4; ++posture) {
     watch_for(1);
     check(moved_);
   }
