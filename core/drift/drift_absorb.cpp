@@ -62,9 +62,8 @@ void DriftWatch::absorb(double now_s) {
   absorb_what_was_pushed(now_s);
 }
 
-/// A box that was pushed by less than its own surface looks like another one stays in the map and disputes
-/// where the sensor is. The robot has said since the dispute began that the sensor has not slid: so it is the
-/// box.
+/// A box that was pushed so little that its cells still look the same disputes where the sensor is. The robot
+/// has said since the dispute began that the sensor has not slid: so it is the box.
 void DriftWatch::absorb_what_was_pushed(double now_s) {
   if (disputed_since_s_ < 0 || now_s - disputed_since_s_ < settings_.absorb_s) return;
   if (!robot_word_.agrees_since(disputed_since_s_, now_s)) return;

@@ -48,8 +48,7 @@ bool DriftWatch::has_crept() const {
 
 /// What the robot shows is, but for what is uncertain of it, some part of what the background has followed.
 bool DriftWatch::is_what_was_followed(const RobotShift& robot) const {
-  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_.translation()) *
-                        shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
+  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_ * map_.middle_sensor());
   const Vector6d followed = move * followed_;
   const Eigen::LDLT<Matrix6d> solver(robot.covariance);
   const Vector6d weight = solver.solve(followed);
@@ -65,9 +64,8 @@ bool DriftWatch::robot_denies_the_shift(double now_s) const {
   const double onset_s = test_.run_length() / settings_.shift.rate_hz;
   if (!robot_word_.agrees_within(std::min(RobotWord::kOfNow_s, onset_s), now_s)) return false;
   const PoseCheck& check = *robot_word_.newest();
-  const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_.translation());
-  const Matrix6d back = shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
-  const Vector6d moved = move * (back * test_.mean()), seen = check.turn_shift;
+  const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_ * map_.middle_sensor());
+  const Vector6d moved = move * test_.mean(), seen = check.turn_shift;
   const Eigen::LDLT<Matrix6d> solver(check.turn_shift_covariance);
   const double stands = seen.dot(solver.solve(seen));
   const Vector6d off = seen - moved;
@@ -79,8 +77,7 @@ bool DriftWatch::is_robots_shift_possible(const RobotShift& robot) const {
   if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
   if (!(robot.sigmas > 0))
     return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
-  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_.translation()) *
-                        shift_of_point(-(T_base_sensor_.linear() * map_.middle_sensor()));
+  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_ * map_.middle_sensor());
   const Vector6d left = robot.turn_shift - move * test_.mean();
   Matrix6d mean_covariance = *last_covariance_ / kMeanFrames;
   mean_covariance.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);

@@ -13,8 +13,7 @@ constexpr double kOff_s = 0.5;  // one comparison alone says nothing of a second
 /// explain, in nearly every posture.
 constexpr double kAllowance = 2.7, kPostureWeight = 2, kLimit = 5.5;
 constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
-/// Of the last postures together. Sensors of random cells that stood stayed below 2, and one that crept by 3
-/// mm passed 5 (scripts/watch.sh --creep).
+/// Of the postures together (docs/figures.md has what it finds).
 constexpr double kCreepSigmas = 4;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 
