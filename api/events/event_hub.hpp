@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -45,10 +46,24 @@ class EventHub {
   /// The number of an id of this run; nothing for any other text.
   std::optional<std::uint64_t> number_of(std::string_view id) const;
 
+  /// One who listens, as long as it lives.
+  class Listener {
+   public:
+    explicit Listener(const EventHub& hub) : hub_(hub) { ++hub_.listeners_; }
+    ~Listener() { --hub_.listeners_; }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+
+   private:
+    const EventHub& hub_;
+  };
+  int listeners() const { return listeners_; }
+
   static constexpr std::size_t kKept = 1000;
 
  private:
   const std::string run_;
+  mutable std::atomic<int> listeners_{0};
   mutable std::mutex mutex_;  // guards what follows
   std::uint64_t last_ = 0;
   std::deque<Event> kept_;

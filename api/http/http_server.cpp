@@ -16,8 +16,10 @@
 #include <mutex>
 #include <thread>
 
+#include "api/http/beating.hpp"
 #include "api/http/http_server_error.hpp"
 #include "api/http/session.hpp"
+#include "core/base/thread_name.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -41,11 +43,13 @@ Error translated(const ErrorCode& why, const std::string& where) {
 
 class HttpServer::Impl {
  public:
-  Impl(const HttpServerSettings& settings, const Router& router, std::function<void(const AccessRecord&)> log)
+  Impl(const HttpServerSettings& settings, const Router& router, std::function<void(const AccessRecord&)> log,
+       HttpWatch* watch)
       : settings_(settings),
         log_(std::move(log)),
+        watch_(watch ? *watch : own_watch_),
         workers_(std::make_unique<asio::thread_pool>(static_cast<std::size_t>(settings.workers))),
-        context_{settings_, router, log_, *workers_} {}
+        context_{settings_, router, log_, *workers_, watch_} {}
 
   ~Impl() {
     stop(std::chrono::milliseconds(0));
@@ -71,7 +75,11 @@ class HttpServer::Impl {
 
   void run() {
     asio::co_spawn(io_, accept_connections(), asio::detached);
-    thread_ = std::thread([this] { io_.run(); });
+    asio::co_spawn(io_, keep_beating(watch_.network_thread), asio::detached);
+    thread_ = std::thread([this] {
+      name_thread("http");
+      io_.run();
+    });
   }
 
   void stop(std::chrono::milliseconds grace) {
@@ -108,11 +116,14 @@ class HttpServer::Impl {
 
   void begin_session(tcp::socket socket) {
     const auto limit = static_cast<std::size_t>(settings_.max_connections);
-    if (sessions_.size() >= limit + kMaxRefusals) return;
     const bool serve = sessions_.size() < limit;
+    (serve ? watch_.accepted : watch_.refused).add();
+    if (sessions_.size() >= limit + kMaxRefusals) return;
+    if (serve) watch_.connections.add(1);
     const auto session = sessions_.emplace(sessions_.end(), std::move(socket), context_);
     asio::co_spawn(io_, serve ? session->run() : session->refuse(),
-                   [this, session](const std::exception_ptr&) {
+                   [this, session, serve](const std::exception_ptr&) {
+                     if (serve) watch_.connections.add(-1);
                      sessions_.erase(session);
                      note_end();
                    });
@@ -135,6 +146,8 @@ class HttpServer::Impl {
 
   const HttpServerSettings settings_;
   const std::function<void(const AccessRecord&)> log_;
+  HttpWatch own_watch_;  // where nobody else watches
+  HttpWatch& watch_;
   std::unique_ptr<asio::thread_pool> workers_;
   SessionContext context_;  // used on the network thread only, as what follows up to port_
   std::list<Session> sessions_;
@@ -150,8 +163,9 @@ class HttpServer::Impl {
 
 Result<std::unique_ptr<HttpServer>> HttpServer::start(const HttpServerSettings& settings,
                                                       const Router& router,
-                                                      std::function<void(const AccessRecord&)> log) {
-  auto impl = std::make_unique<Impl>(settings, router, std::move(log));
+                                                      std::function<void(const AccessRecord&)> log,
+                                                      HttpWatch* watch) {
+  auto impl = std::make_unique<Impl>(settings, router, std::move(log), watch);
   if (auto status = impl->listen(); !status) return status.error();
   impl->run();
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));

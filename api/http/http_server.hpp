@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "api/http/http_watch.hpp"
 #include "api/routes/router.hpp"
 #include "core/base/result.hpp"
 
@@ -30,6 +31,8 @@ struct AccessRecord {
   std::string method;
   std::string path;
   int status = 0;
+  std::string request_id;
+  int route = -1;  ///< place in Router::routes(); -1: none
   std::chrono::microseconds duration{0};
 };
 
@@ -37,10 +40,11 @@ struct AccessRecord {
 /// threads, so that no quick answer ever waits for a slow one.
 class HttpServer {
  public:
-  /// Listens when it returns. `router` must outlive the server. `log` is called on the network thread.
-  /// Errors: HttpServerError, the detail naming address and port.
+  /// Listens when it returns. `router` and `watch`, which may be null, must outlive the server. `log` is
+  /// called on the network thread. Errors: HttpServerError, the detail naming address and port.
   static Result<std::unique_ptr<HttpServer>> start(const HttpServerSettings& settings, const Router& router,
-                                                   std::function<void(const AccessRecord&)> log = {});
+                                                   std::function<void(const AccessRecord&)> log = {},
+                                                   HttpWatch* watch = nullptr);
   ~HttpServer();
 
   /// Takes no more connections, lets requests under way end within `grace`, then closes everything. Waits for

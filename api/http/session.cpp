@@ -13,6 +13,7 @@
 
 #include "api/http/request_message.hpp"
 #include "api/routes/responses.hpp"
+#include "core/base/log_scope.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -25,11 +26,12 @@ constexpr std::size_t kReadAtOnce = 4096;
 constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
 
 template <class Body>
-http::response<Body> heading(const Response& response, bool keep_alive) {
+http::response<Body> heading(const Response& response, const std::string& request_id, bool keep_alive) {
   http::response<Body> message{static_cast<http::status>(response.status), 11};
   for (const auto& [name, value] : response.headers) message.insert(name, value);
   message.set(http::field::server, "calibrd");
   message.set("X-Content-Type-Options", "nosniff");
+  message.set("X-Request-Id", request_id);
   message.keep_alive(keep_alive);
   return message;
 }
@@ -38,12 +40,19 @@ bool wants_continue(const http::request<http::string_body>& message) {
   return message.version() >= 11 && beast::iequals(message[http::field::expect], "100-continue");
 }
 
+/// Whatever is logged meanwhile names the request.
+Response answer_marked(const Router& router, const Request& request) {
+  const LogScope scope({request.request_id, {}});
+  return router.answer(request);
+}
+
 }  // namespace
 
 asio::awaitable<void> Session::run() {
   while (!context_.stopping) {  // no && with co_await: GCC 12 evaluates the latter whatever the former says
     if (!co_await await_request()) break;
     RequestParser parser;
+    request_id_ = context_.request_ids.next();
     const auto failure = co_await read(parser);
     if (failure) {
       co_await refuse_unreadable(failure);
@@ -56,6 +65,7 @@ asio::awaitable<void> Session::run() {
 }
 
 asio::awaitable<void> Session::refuse() {
+  request_id_ = context_.request_ids.next();
   co_await write(problem(ApiError::too_many_connections), false, false);
   beast::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
@@ -104,25 +114,33 @@ asio::awaitable<bool> Session::answer(RequestParser& parser) {
   auto message = parser.release();
   const bool keep_alive = message.keep_alive() && !context_.stopping;
   const bool head = message.method() == http::verb::head;
-  const auto request = request_of(message);
+  if (const auto id = message["X-Request-Id"]; is_request_id({id.data(), id.size()}))
+    request_id_ = std::string(id);
+  auto request = request_of(message);
   if (!request)
     co_return co_await write(problem(ApiError::bad_request, "the path cannot be decoded"), head, keep_alive);
+  request->request_id = request_id_;
   stream_.expires_never();
   auto response = co_await dispatch(*request);
   if (response.worth_waiting.count() > 0) response = co_await ask_again(*request, std::move(response));
-  if (context_.log) {
-    const auto duration = std::chrono::steady_clock::now() - begin;
-    context_.log({request->method, request->path, response.status,
-                  std::chrono::duration_cast<std::chrono::microseconds>(duration)});
-  }
+  log(*request, response, begin);
   if (!response.stream) co_return co_await write(std::move(response), head, keep_alive);
   co_await write_stream(std::move(response), head);
   co_return false;
 }
 
+void Session::log(const Request& request, const Response& response,
+                  std::chrono::steady_clock::time_point begin) const {
+  if (!context_.log) return;
+  const LogScope scope({request.request_id, {}});
+  const auto duration = std::chrono::steady_clock::now() - begin;
+  context_.log({request.method, request.path, response.status, request.request_id, response.route,
+                std::chrono::duration_cast<std::chrono::microseconds>(duration)});
+}
+
 /// Its end is that of the connection.
 asio::awaitable<void> Session::write_stream(Response response, bool head) {
-  auto message = heading<http::empty_body>(response, false);
+  auto message = heading<http::empty_body>(response, request_id_, false);
   stream_.expires_after(context_.settings.write_timeout);
   beast::error_code failure;
   co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
@@ -141,9 +159,9 @@ asio::awaitable<void> Session::write_stream(Response response, bool head) {
 }
 
 asio::awaitable<Response> Session::dispatch(const Request& request) {
-  if (context_.router.cost(request) == Cost::quick) co_return context_.router.answer(request);
+  if (context_.router.cost(request) == Cost::quick) co_return answer_marked(context_.router, request);
   auto work = [&router = context_.router, &request]() -> asio::awaitable<Response> {
-    co_return router.answer(request);
+    co_return answer_marked(router, request);
   };
   co_return co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
 }
@@ -166,11 +184,11 @@ asio::awaitable<bool> Session::write(Response response, bool head, bool keep_ali
   stream_.expires_after(context_.settings.write_timeout);
   beast::error_code failure;
   if (head || bodiless) {
-    auto message = heading<http::empty_body>(response, keep_alive);
+    auto message = heading<http::empty_body>(response, request_id_, keep_alive);
     if (!bodiless) message.content_length(response.body.size());
     co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
   } else {
-    auto message = heading<http::string_body>(response, keep_alive);
+    auto message = heading<http::string_body>(response, request_id_, keep_alive);
     message.body() = std::move(response.body);
     message.prepare_payload();
     co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
@@ -179,6 +197,7 @@ asio::awaitable<bool> Session::write(Response response, bool head, bool keep_ali
 }
 
 asio::awaitable<void> Session::refuse_unreadable(beast::error_code why) {
+  context_.watch.unreadable.add();
   if (const auto error = problem_of(why)) co_await write(problem(*error, why.message()), false, false);
 }
 

@@ -7,6 +7,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 
 #include "api/http/http_server.hpp"
+#include "api/http/request_id.hpp"
 #include "api/http/request_message.hpp"
 
 namespace calibrd::api {
@@ -17,6 +18,8 @@ struct SessionContext {
   const Router& router;
   const std::function<void(const AccessRecord&)>& log;
   boost::asio::thread_pool& workers;
+  HttpWatch& watch;
+  RequestIds request_ids = {};
   bool stopping = false;
 };
 
@@ -38,6 +41,8 @@ class Session {
   boost::asio::awaitable<bool> await_request();
   boost::asio::awaitable<boost::beast::error_code> read(RequestParser& parser);
   boost::asio::awaitable<bool> answer(RequestParser& parser);
+  void log(const Request& request, const Response& response,
+           std::chrono::steady_clock::time_point begin) const;
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
@@ -48,6 +53,7 @@ class Session {
   boost::beast::flat_buffer buffer_;
   SessionContext& context_;
   bool idle_ = true;
+  std::string request_id_;  // of the request being read or answered
 };
 
 }  // namespace calibrd::api

@@ -13,7 +13,7 @@ constexpr auto kHeartbeat = std::chrono::seconds(5);
 class EventStream : public BodyStream {
  public:
   EventStream(const EventHub& events, const std::string& last_id)
-      : events_(events), last_(events.number_of(last_id)), is_resumed_(!last_id.empty()) {}
+      : events_(events), listener_(events), last_(events.number_of(last_id)), is_resumed_(!last_id.empty()) {}
 
   std::string next() override {
     const auto batch = events_.after(last_);
@@ -34,6 +34,7 @@ class EventStream : public BodyStream {
 
  private:
   const EventHub& events_;
+  const EventHub::Listener listener_;
   std::optional<std::uint64_t> last_;
   bool is_resumed_, is_first_ = true;
   std::chrono::steady_clock::time_point written_at_;

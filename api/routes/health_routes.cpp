@@ -19,9 +19,25 @@ json::object dependency_json(const std::string& name, bool ready, const std::str
           {"reason", reason.empty() ? json::value(nullptr) : json::value(reason)}};
 }
 
+std::string stalled_text(const std::vector<std::string>& stalled) {
+  std::string names;
+  for (const auto& name : stalled) names.append(names.empty() ? "" : ", ").append(name);
+  return names.empty() ? names
+                       : names + " has not gone on for ten seconds; send a support bundle and restart";
+}
+
+/// Alive: the threads that must go on do. Whoever watches the process restarts it otherwise.
+Response answer_alive(const Request& request, const OperationsService& operations) {
+  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+  const auto stalled = operations.stalled_threads();
+  json::object body{{"alive", stalled.empty()}};
+  if (!stalled.empty()) body["reason"] = stalled_text(stalled);
+  return json_response(stalled.empty() ? 200 : 503, body);
+}
+
 /// Ready: what the daemon needs to do its work is there. A lost sensor or robot makes it not ready, never
 /// dead.
-Response answer_ready(const Request& request, CellService& service) {
+Response answer_ready(const Request& request, CellService& service, const OperationsService& operations) {
   if (auto unknown = unknown_query(request, {"verbose"})) return problem(*unknown);
   const auto cell = service.cell();
   bool ready = cell.robot.link_state == "streaming";
@@ -34,6 +50,10 @@ Response answer_ready(const Request& request, CellService& service) {
   const auto& storage = cell.storage;
   ready = ready && storage.ready;
   dependencies.push_back(dependency_json("storage", storage.ready, storage.state, storage.reason));
+  const auto stalled = operations.stalled_threads();
+  ready = ready && stalled.empty();
+  dependencies.push_back(dependency_json("threads", stalled.empty(),
+                                         stalled.empty() ? "progressing" : "stalled", stalled_text(stalled)));
   json::object body{{"ready", ready}};
   if (request.query.contains("verbose")) body["dependencies"] = std::move(dependencies);
   return json_response(ready ? 200 : 503, body);
@@ -41,14 +61,14 @@ Response answer_ready(const Request& request, CellService& service) {
 
 }  // namespace
 
-void add_health_routes(Router& router, CellService& service) {
-  router.add("GET", "/livez", Cost::quick, [](const Request& request, const PathValues&) {
-    if (auto unknown = unknown_query(request, {})) return problem(*unknown);
-    return json_response(200, json::object{{"alive", true}});
+void add_health_routes(Router& router, CellService& service, const OperationsService& operations) {
+  router.add("GET", "/livez", Cost::quick, [&operations](const Request& request, const PathValues&) {
+    return answer_alive(request, operations);
   });
-  router.add("GET", "/readyz", Cost::quick, [&service](const Request& request, const PathValues&) {
-    return answer_ready(request, service);
-  });
+  router.add("GET", "/readyz", Cost::quick,
+             [&service, &operations](const Request& request, const PathValues&) {
+               return answer_ready(request, service, operations);
+             });
 }
 
 }  // namespace calibrd::api

@@ -19,6 +19,7 @@ struct Request {
   std::map<std::string, std::string> query;
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
+  std::string request_id = {};  ///< of this request in logs and answers
 
   /// The header's value, or an empty string.
   const std::string& header(const std::string& lower_case_name) const {
@@ -44,6 +45,7 @@ struct Response {
   /// most this long.
   std::chrono::milliseconds worth_waiting{0};
   std::shared_ptr<BodyStream> stream = nullptr;  ///< instead of `body`, until the client or the daemon ends
+  int route = -1;  ///< place in Router::routes() of what has answered; -1: none of them
 };
 
 /// Splits "/path?a=1&b" and decodes it; nothing when it cannot be decoded.

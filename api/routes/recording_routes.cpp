@@ -29,15 +29,6 @@ Result<CaptureRequest> read_capture_request(const Request& request, const std::s
                         note->value_or("")};
 }
 
-Response archive_response(Result<CaptureArchive> archive) {
-  if (!archive) return problem(archive.error());
-  return {200,
-          {{"Content-Type", "application/x-tar"},
-           {"Content-Disposition", "attachment; filename=\"" + archive->file_name + "\""},
-           {"Cache-Control", "no-store"}},
-          std::move(archive->tar)};
-}
-
 Response answer_capture(const Request& request, const PathValues& values, CellService& service) {
   if (auto unknown = unknown_query(request, {})) return problem(*unknown);
   const auto wanted = read_capture_request(request, values[0]);

@@ -32,6 +32,15 @@ Response problem(const Error& error) {
 
 Response problem(ApiError error, std::string detail) { return problem(fail(error, std::move(detail))); }
 
+Response archive_response(Result<CaptureArchive> archive) {
+  if (!archive) return problem(archive.error());
+  return {200,
+          {{"Content-Type", "application/x-tar"},
+           {"Content-Disposition", "attachment; filename=\"" + archive->file_name + "\""},
+           {"Cache-Control", "no-store"}},
+          std::move(archive->tar)};
+}
+
 std::optional<Error> unknown_query(const Request& request, std::initializer_list<std::string> known) {
   const std::vector<std::string> names(known);
   for (const auto& [name, unused] : request.query)

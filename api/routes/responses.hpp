@@ -8,8 +8,12 @@
 
 #include "api/problem/api_error.hpp"
 #include "api/routes/message.hpp"
+#include "api/service/reports.hpp"
 
 namespace calibrd::api {
+
+/// An archive to be saved under its name, or the error.
+Response archive_response(Result<CaptureArchive> archive);
 
 Response json_response(int status, const boost::json::value& body);
 

@@ -40,6 +40,12 @@ const std::string& effective_method(const Request& request) {
 
 }  // namespace
 
+std::string path_of(const Route& route) {
+  std::string path;
+  for (const auto& segment : route.segments) path.append("/").append(segment);
+  return path;
+}
+
 void Router::add(std::string method, std::string_view path, Cost cost,
                  std::function<Response(const Request&, const PathValues&)> answer) {
   routes_.push_back({std::move(method), split(path), cost, std::move(answer)});
@@ -57,11 +63,14 @@ Response Router::answer(const Request& request) const {
   PathValues values;
   const auto* route = find(effective_method(request), segments, values);
   if (!route) return without_route(request, segments);
+  Response response;
   try {
-    return route->answer(request, values);
+    response = route->answer(request, values);
   } catch (const std::exception& failure) {
-    return problem(ApiError::internal, failure.what());
+    response = problem(ApiError::internal, failure.what());
   }
+  response.route = static_cast<int>(route - routes_.data());
+  return response;
 }
 
 Cost Router::cost(const Request& request) const {

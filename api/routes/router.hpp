@@ -24,6 +24,9 @@ struct Route {
   std::function<Response(const Request&, const PathValues&)> answer;
 };
 
+/// "/api/v1/sensors/{id}"
+std::string path_of(const Route& route);
+
 /// The table of routes. Filled once, then safe to read from any thread.
 class Router {
  public:
@@ -35,6 +38,9 @@ class Router {
   Response answer(const Request& request) const;
 
   Cost cost(const Request& request) const;
+
+  /// In the order they were added.
+  const std::vector<Route>& routes() const { return routes_; }
 
  private:
   const Route* find(const std::string& method, const std::vector<std::string>& segments,

@@ -4,9 +4,10 @@
 
 namespace calibrd::api {
 
-Router make_routes(CellService& service, const EventHub& events) {
+Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations) {
   Router router;
-  add_health_routes(router, service);
+  add_health_routes(router, service, operations);
+  add_operations_routes(router, operations);
   add_pose_routes(router, service);
   add_sensor_routes(router, service);
   add_drift_routes(router, service);

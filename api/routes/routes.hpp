@@ -4,12 +4,13 @@
 #include "api/events/event_hub.hpp"
 #include "api/routes/router.hpp"
 #include "api/service/cell_service.hpp"
+#include "api/service/operations_service.hpp"
 
 namespace calibrd::api {
 
-/// Every route of the HTTP interface (docs/api.md) over `service` and `events`, which must outlive the
-/// router.
-Router make_routes(CellService& service, const EventHub& events);
+/// Every route of the HTTP interface (docs/api.md) over `service`, `events` and `operations`, which must
+/// outlive the router.
+Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations);
 
 // The parts it is made of.
 void add_pose_routes(Router& router, CellService& service);
@@ -22,7 +23,8 @@ void add_obstacle_routes(Router& router, CellService& service);
 void add_next_posture_routes(Router& router, CellService& service);
 void add_motion_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);
-void add_health_routes(Router& router, CellService& service);
+void add_health_routes(Router& router, CellService& service, const OperationsService& operations);
+void add_operations_routes(Router& router, const OperationsService& operations);
 void add_event_routes(Router& router, const EventHub& events);
 
 }  // namespace calibrd::api

@@ -7,6 +7,7 @@
 #include "api/http/request_message.hpp"
 #include "api/routes/routes.hpp"
 #include "tests/api/fake_cell.hpp"
+#include "tests/api/fake_operations.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/response_check.hpp"
 
@@ -44,7 +45,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (input.byte() & 1U) cell.make_calibrated();
   const std::size_t piece = 1 + 16U * input.byte();
   const api::EventHub events("run");
-  const api::Router router = api::make_routes(cell, events);
+  const api::FakeOperations operations;
+  const api::Router router = api::make_routes(cell, events, operations);
   std::optional<std::string_view> rest = input.text();
   while (rest && !rest->empty()) {
     api::RequestParser parser;

@@ -5,6 +5,7 @@
 
 #include "api/routes/routes.hpp"
 #include "tests/api/fake_cell.hpp"
+#include "tests/api/fake_operations.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/response_check.hpp"
 
@@ -40,7 +41,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return api::CaptureArchive{"a.tar", "tar bytes"};
   };
   const api::EventHub events("run");
-  const api::Router router = api::make_routes(cell, events);
+  const api::FakeOperations operations;
+  const api::Router router = api::make_routes(cell, events, operations);
   fuzz::check_response(
       router.answer({"POST", path, {}, {{"content-type", "application/json"}}, std::string(input.text())}));
   check(cell.last_start_all.each.guess_T_base_sensor, cell.last_start_all.each.postures);

@@ -11,6 +11,7 @@
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
 #include "tests/api/fake_cell.hpp"
+#include "tests/api/fake_operations.hpp"
 #include "tests/api/http/client.hpp"
 
 namespace calibrd::api {
@@ -22,16 +23,18 @@ class HttpServerTest : public ::testing::Test {
  protected:
   void start(HttpServerSettings settings = {}) {
     settings.port = 0;
-    auto started =
-        HttpServer::start(settings, router_, [this](const AccessRecord& record) { log_.push_back(record); });
+    auto started = HttpServer::start(
+        settings, router_, [this](const AccessRecord& record) { log_.push_back(record); }, &watch_);
     ASSERT_TRUE(started) << started.error().message();
     server_ = *std::move(started);
   }
 
   FakeCell cell_;
   EventHub events_{"run"};
-  Router router_ = make_routes(cell_, events_);
+  FakeOperations operations_;
+  Router router_ = make_routes(cell_, events_, operations_);
   std::vector<AccessRecord> log_;
+  HttpWatch watch_;
   std::unique_ptr<HttpServer> server_;
 };
 

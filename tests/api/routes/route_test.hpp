@@ -8,6 +8,7 @@
 
 #include "api/routes/routes.hpp"
 #include "tests/api/fake_cell.hpp"
+#include "tests/api/fake_operations.hpp"
 
 namespace calibrd::api {
 
@@ -37,9 +38,10 @@ class RouteTest : public ::testing::Test {
 
   FakeCell cell_;
   EventHub events_{"run"};
+  FakeOperations operations_;
 
  private:
-  Router router_ = make_routes(cell_, events_);
+  Router router_ = make_routes(cell_, events_, operations_);
   Response last_;
 };
 
