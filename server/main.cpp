@@ -7,10 +7,12 @@
 #include <string>
 #include <system_error>
 
+#include "api/metrics/metric_table.hpp"
 #include "core/base/memory.hpp"
 #include "server/calibrate_command.hpp"
 #include "server/config/print_config.hpp"
 #include "server/serve_command.hpp"
+#include "server/support_bundle_command.hpp"
 
 namespace {
 
@@ -38,6 +40,11 @@ int dispatch(int argc, char** argv) {
   auto* calibrate = app.add_subcommand("calibrate", "Calibrate a recording and print the result as JSON");
   calibrd::add_calibrate_options(*calibrate, calibrate_options);
   auto* reference = app.add_subcommand("config-reference", "Print docs/configuration.md");
+  calibrd::SupportBundleOptions bundle_options;
+  auto* bundle =
+      app.add_subcommand("support-bundle", "Save what a daemon tells of itself, for who is to help");
+  calibrd::add_support_bundle_options(*bundle, bundle_options);
+  auto* metrics = app.add_subcommand("metrics-reference", "Print docs/metrics.md");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
@@ -47,6 +54,11 @@ int dispatch(int argc, char** argv) {
     std::cout << calibrd::config_reference();
     return 0;
   }
+  if (metrics->parsed()) {
+    std::cout << calibrd::api::metrics_reference();
+    return 0;
+  }
+  if (bundle->parsed()) return calibrd::run_support_bundle(bundle_options);
   if (calibrate->parsed()) return calibrd::run_calibrate(calibrate_options);
   if (serve->parsed() || serve_options.check_config || serve_options.print_config)
     return calibrd::run_serve(serve_options);

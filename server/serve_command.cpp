@@ -17,6 +17,7 @@
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/end_signal.hpp"
 #include "server/logging/logging.hpp"
+#include "server/operations/notify_socket.hpp"
 
 namespace calibrd {
 namespace {
@@ -24,15 +25,6 @@ namespace {
 constexpr const char* kDefaultFile = "/etc/calibrd/calibrd.toml";
 constexpr int kUnusable = 2;
 constexpr auto kPatience = std::chrono::milliseconds(900);
-
-ConfigSources sources_of(const ServeOptions& options) {
-  ConfigSources sources{std::nullopt, process_environment(), options.overrides};
-  if (!options.config_file.empty())
-    sources.file = options.config_file;
-  else if (std::filesystem::exists(kDefaultFile))
-    sources.file = kDefaultFile;
-  return sources;
-}
 
 int refuse(const Error& error) {
   std::cerr << "calibrd: " << error.message() << '\n';
@@ -49,9 +41,12 @@ int only_check(const Config& config) {
 /// Starts in a thread of its own, so that the signal is heard while a large robot model is being read.
 int serve(const LoadedConfig& loaded) {
   const Config& config = loaded.config;
+  const auto orders = take_notify_orders();
+  const auto socket = NotifySocket::open(orders.address);
+  const ServiceManager manager{socket ? &*socket : nullptr, orders.watchdog};
   const EndSignal end;
   auto starting = std::async(std::launch::async, [&, main = pthread_self()] {
-    auto daemon = Daemon::start(config, CALIBRD_VERSION, config_as_toml(loaded));
+    auto daemon = Daemon::start(config, CALIBRD_VERSION, config_as_toml(loaded), manager);
     if (daemon)
       spdlog::info("calibrd {} listens on {}:{}", CALIBRD_VERSION, config.server.address,
                    (*daemon)->http_port());
@@ -60,6 +55,7 @@ int serve(const LoadedConfig& loaded) {
     return daemon;
   });
   const int number = end.wait();
+  if (socket) socket->send("STOPPING=1");
   EndSignal::end_within(kPatience);
   const auto daemon = starting.get();
   if (!daemon) return refuse(daemon.error());
@@ -69,6 +65,15 @@ int serve(const LoadedConfig& loaded) {
 }
 
 }  // namespace
+
+ConfigSources sources_of(const ServeOptions& options) {
+  ConfigSources sources{std::nullopt, process_environment(), options.overrides};
+  if (!options.config_file.empty())
+    sources.file = options.config_file;
+  else if (std::filesystem::exists(kDefaultFile))
+    sources.file = kDefaultFile;
+  return sources;
+}
 
 void add_serve_options(CLI::App& command, ServeOptions& options) {
   command.add_option("--config", options.config_file, "Configuration file (TOML)")->type_name("FILE");

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "server/config/load_config.hpp"
+
 namespace CLI {
 class App;
 }
@@ -17,6 +19,9 @@ struct ServeOptions {
   bool check_config = false;
   bool print_config = false;
 };
+
+/// Where its configuration comes from.
+ConfigSources sources_of(const ServeOptions& options);
 
 void add_serve_options(CLI::App& command, ServeOptions& options);
 

@@ -14,6 +14,8 @@
 #include "server/daemon/motion_link.hpp"
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
+#include "server/operations/operations.hpp"
+#include "server/operations/service_watch.hpp"
 #include "server/storage/calibration_store.hpp"
 #include "server/storage/store_watch.hpp"
 
@@ -66,6 +68,7 @@ Status check_config(const Config& config) {
 
 /// In the order they are made; they end in the opposite one.
 struct Daemon::Parts {
+  std::unique_ptr<Operations> operations;
   std::unique_ptr<CalibrationStore> store;
   std::shared_ptr<CaptureFolder> captures;
   std::unique_ptr<StoreWatch> store_watch;
@@ -77,6 +80,14 @@ struct Daemon::Parts {
   std::unique_ptr<FeedThread> feed;
   api::Router router;
   std::unique_ptr<api::HttpServer> http;
+  std::unique_ptr<ServiceWatch> service_watch;
+
+  void make_operations(const Config& config, const std::string& version, const std::string& configuration) {
+    OperationsFacts facts{
+        version, configuration, config.storage.path, capture_folder_of(config.storage.path), {}, {}};
+    for (const auto& [id, sensor] : config.sensors) facts.sensor_ids.push_back(id);
+    operations = std::make_unique<Operations>(std::move(facts));
+  }
 
   Status open_store(const Config& config) {
     auto opened = CalibrationStore::open(config.storage.path);
@@ -86,7 +97,10 @@ struct Daemon::Parts {
         capture_folder_of(config.storage.path),
         CaptureLimits{config.storage.captures_max_age,
                       static_cast<std::uint64_t>(config.storage.captures_max_mb) * 1'000'000});
-    store_watch = std::make_unique<StoreWatch>(*store, log_storage, [this] { captures->remove_old(); });
+    store_watch = std::make_unique<StoreWatch>(*store, log_storage, [this] {
+      captures->remove_old();
+      operations->look_at_disk();
+    });
     return Done{};
   }
 
@@ -108,12 +122,20 @@ struct Daemon::Parts {
     settings.controller_frame = *std::move(frame);
     settings.configuration = configuration;
     settings.captures = captures;
-    cell = std::make_unique<LiveCell>(std::move(settings), *model, *virtual_cell, *std::move(mapping), *store,
-                                      core_estimator(*virtual_cell, drift_settings(config.drift)),
-                                      CellLog{log_calibration, log_pose, log_error, log_motion});
+    cell =
+        std::make_unique<LiveCell>(std::move(settings), *model, *virtual_cell, *std::move(mapping), *store,
+                                   core_estimator(*virtual_cell, drift_settings(config.drift)), cell_log());
     for (const auto& [id, sensor] : config.sensors)
       if (auto status = cell->add_sensor(sensor_setup(id, sensor)); !status) return status;
     return Done{};
+  }
+
+  CellLog cell_log() {
+    const auto on_calibration = [this](const api::CalibrationReport& calibration) {
+      operations->note(calibration);
+      log_calibration(calibration);
+    };
+    return {on_calibration, log_pose, log_error, log_motion, log_calibration_start};
   }
 
   Status make_link(const Config& config) {
@@ -133,8 +155,17 @@ struct Daemon::Parts {
 
   Status make_http(const Config& config) {
     feed = std::make_unique<FeedThread>(*cell);
-    router = api::make_routes(*cell, feed->hub());
-    auto server = api::HttpServer::start(http_settings(config), router, log_access);
+    router = api::make_routes(*cell, feed->hub(), *operations);
+    auto& pulse = operations->pulse();
+    pulse.add("http", operations->http_watch().network_thread);
+    pulse.add("robot link", link->heartbeat());
+    for (const auto& [id, heartbeat] : cell->heartbeats()) pulse.add("sensor " + id, *heartbeat);
+    operations->begin(*cell, feed->hub(), router);
+    const auto on_answer = [this](const api::AccessRecord& record) {
+      operations->note(record);
+      log_access(record);
+    };
+    auto server = api::HttpServer::start(http_settings(config), router, on_answer, &operations->http_watch());
     if (!server) return server.error();
     http = *std::move(server);
     return Done{};
@@ -149,19 +180,31 @@ struct Daemon::Parts {
     }
     return Done{};
   }
+
+  void watch_service(const ServiceManager& manager) {
+    ServiceView view;
+    view.status = [this] { return operations->status(); };
+    view.stalled = [this](std::chrono::nanoseconds limit) { return operations->pulse().stalled(limit); };
+    view.on_stall = log_stall;
+    if (manager.socket) manager.socket->send("READY=1");
+    service_watch = std::make_unique<ServiceWatch>(manager.socket, manager.watchdog, std::move(view));
+  }
 };
 
 Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::string& version,
-                                              const std::string& configuration) {
+                                              const std::string& configuration,
+                                              const ServiceManager& manager) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::make_unique<Parts>()));
   auto& parts = *daemon->parts_;
   if (auto status = check_sensors(config); !status) return status.error();
+  parts.make_operations(config, version, configuration);
   if (auto status = parts.make_model(config); !status) return status.error();
   if (auto status = parts.open_store(config); !status) return status.error();
   if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
   if (auto status = parts.make_http(config); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();
+  parts.watch_service(manager);
   return daemon;
 }
 
@@ -169,6 +212,7 @@ Daemon::Daemon(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Daemon::~Daemon() { stop(); }
 
 void Daemon::stop() {
+  parts_->service_watch.reset();
   if (parts_->cell) parts_->cell->request_stop();
   if (parts_->motion) parts_->motion->stop();
   if (parts_->http) parts_->http->stop(kHttpGrace);

@@ -7,12 +7,19 @@
 
 #include "core/base/result.hpp"
 #include "server/config/config.hpp"
+#include "server/operations/notify_socket.hpp"
 
 namespace calibrd {
 
 /// Checks what a configuration points to: robot model, joints, sensors' settings. Opens no port and no store.
 /// The error names the file or key at fault.
 Status check_config(const Config& config);
+
+/// Who is told how the daemon is; all may be absent.
+struct ServiceManager {
+  const NotifySocket* socket = nullptr;  ///< must outlive the daemon
+  std::optional<std::chrono::microseconds> watchdog;
+};
 
 /// The running daemon: robot link, sensors, store and HTTP server wired together.
 class Daemon {
@@ -21,7 +28,8 @@ class Daemon {
   /// time. `configuration`: the same as text, which is kept with every calibration. The error names the file,
   /// key or port at fault.
   static Result<std::unique_ptr<Daemon>> start(const Config& config, const std::string& version,
-                                               const std::string& configuration);
+                                               const std::string& configuration,
+                                               const ServiceManager& manager = {});
   ~Daemon();
 
   /// Ends everything in good order.

@@ -6,6 +6,7 @@
 
 #include "api/json/calibration_result_json.hpp"
 #include "api/routes/names.hpp"
+#include "core/base/log_scope.hpp"
 
 namespace calibrd {
 namespace {
@@ -18,6 +19,12 @@ std::string printable(std::string text) {
 }
 
 }  // namespace
+
+void log_calibration_start(const api::CalibrationReport& calibration) {
+  const LogScope scope({log_marks().request_id, calibration.id});
+  spdlog::info("sensor {}: calibration {} was asked for, {} postures", calibration.sensor_id, calibration.id,
+               calibration.postures_wanted);
+}
 
 void log_calibration(const api::CalibrationReport& calibration) {
   const auto verdict =
@@ -50,6 +57,12 @@ void log_pose(const api::PoseReport& pose) {
                  pose.known->calibration_id);
   else
     spdlog::warn("sensor {}: no valid pose ({}): {}", pose.sensor_id, api::name_of(pose.state), pose.reason);
+}
+
+void log_stall(const std::vector<std::string>& threads) {
+  for (const auto& name : threads)
+    spdlog::error("thread {} does not go on; save a support bundle and restart, if no watchdog does", name);
+  if (threads.empty()) spdlog::info("all threads go on again");
 }
 
 void log_access(const api::AccessRecord& record) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "api/http/http_server.hpp"
 #include "api/service/reports.hpp"
@@ -12,6 +13,8 @@
 namespace calibrd {
 
 // What happens in the cell, as lines of the log.
+/// That it was asked for.
+void log_calibration_start(const api::CalibrationReport& calibration);
 /// A warning unless it has succeeded or was cancelled.
 void log_calibration(const api::CalibrationReport& calibration);
 void log_error(const std::string& message);
@@ -19,6 +22,8 @@ void log_error(const std::string& message);
 void log_motion(const std::string& line, bool is_well);
 void log_storage(const api::StorageReport& storage);
 void log_pose(const api::PoseReport& pose);
+/// Threads that must go on and do not; none: all go on again.
+void log_stall(const std::vector<std::string>& threads);
 void log_access(const api::AccessRecord& record);
 
 /// The events, with every change of the link's health logged.

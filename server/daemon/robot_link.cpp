@@ -2,16 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/daemon/robot_link.hpp"
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <optional>
 #include <thread>
+
+#include "api/http/beating.hpp"
+#include "core/base/thread_name.hpp"
 
 namespace calibrd {
 
 namespace asio = boost::asio;
 
 struct RobotLink::Impl {
+  Heartbeat heartbeat;  // io refers to it
   asio::io_context io{1};
   asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(io);
   std::optional<StateClient> client;
@@ -32,7 +38,11 @@ RobotLink::~RobotLink() { stop(); }
 
 void RobotLink::start() {
   impl_->client->start();
-  impl_->thread = std::thread([this] { impl_->io.run(); });
+  asio::co_spawn(impl_->io, api::keep_beating(impl_->heartbeat), asio::detached);
+  impl_->thread = std::thread([this] {
+    name_thread("robot link");
+    impl_->io.run();
+  });
 }
 
 void RobotLink::stop() {
@@ -41,6 +51,8 @@ void RobotLink::stop() {
   impl_->io.stop();
   if (impl_->thread.joinable()) impl_->thread.join();
 }
+
+const Heartbeat& RobotLink::heartbeat() const { return impl_->heartbeat; }
 
 RobotLinkHealth RobotLink::health() const { return impl_->client->health(); }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 
+#include "core/base/heartbeat.hpp"
 #include "drivers/robot/state_client.hpp"
 
 namespace calibrd {
@@ -20,6 +21,8 @@ class RobotLink {
   void stop();
   /// Safe to call from any thread.
   RobotLinkHealth health() const;
+  /// Of its thread.
+  const Heartbeat& heartbeat() const;
 
  private:
   struct Impl;

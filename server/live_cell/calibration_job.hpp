@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/log_scope.hpp"
 #include "server/live_cell/calibration_jobs.hpp"
 
 namespace calibrd {
@@ -28,6 +29,14 @@ struct CalibrationJobs::Job {
   Surroundings surroundings;                       ///< that its views show, once it is accepted
   std::atomic<bool> cancelled{false};
   bool is_ending = false;  ///< its end is being stored
+  std::string request_id;  ///< of whoever asked for it; empty: nobody did
+
+  /// For what is logged of it: it belongs to the request being answered, else to the one that asked for the
+  /// job.
+  LogMarks marks() const {
+    const auto now = log_marks().request_id;
+    return {now.empty() ? std::string_view(request_id) : now, report.id};
+  }
 };
 
 }  // namespace calibrd

@@ -108,6 +108,7 @@ CalibrationJobs::JobPointer CalibrationJobs::make_job(const api::CalibrationRequ
   job->report.postures_wanted = collector.postures;
   job->report.activate = request.activate;
   if (evidence_.describe) job->report.evidence = evidence_.describe({});
+  job->request_id = log_marks().request_id;
   job->sensor = &sensor;
   job->guess = guess;
   job->deadline = Clock::now() + settings_.collect_timeout;
@@ -164,12 +165,16 @@ std::string CalibrationJobs::active(const std::string& sensor_id) const {
 }
 
 void CalibrationJobs::tell_of_drop(const std::string& id) const {
+  JobPointer job;
   std::optional<CalibrationReport> report;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto job = jobs_.find(id); job != jobs_.end()) report = report_of(*job->second);
+    if (const auto found = jobs_.find(id); found != jobs_.end()) job = found->second;
+    if (job) report = report_of(*job);
   }
-  if (report) log_(*report, {});
+  if (!job) return;
+  const LogScope scope(job->marks());
+  log_(*report, {});
 }
 
 /// What the job is doing; the caller holds mutex_.

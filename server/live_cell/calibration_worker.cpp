@@ -130,6 +130,7 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
 }
 
 void CalibrationJobs::compute(const JobPointer& job) {
+  const LogScope scope(job->marks());
   const auto views = job->task->take_views();
   const auto seen_at = time_of_last(views);
   auto made_from = evidence_.describe ? std::optional(evidence_.describe(views)) : std::nullopt;
@@ -189,6 +190,7 @@ void CalibrationJobs::end_computed(const JobPointer& job, CalibrationResult resu
 /// Stores the end first: a pose that is not on the disk is not published.
 void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string message,
                           std::optional<CalibrationResult> result) {
+  const LogScope scope(job->marks());
   CalibrationReport report;
   Clock::time_point seen_at;
   Surroundings surroundings;

@@ -153,6 +153,12 @@ bool LiveCell::publish(const api::CalibrationReport& calibration, const PoseOrig
   return true;
 }
 
+std::map<std::string, const Heartbeat*> LiveCell::heartbeats() const {
+  std::map<std::string, const Heartbeat*> all;
+  for (const auto& [id, entry] : entries_) all[id] = &entry->sensor->heartbeat();
+  return all;
+}
+
 Result<LiveCell::Entry*> LiveCell::find(std::string_view sensor_id) const {
   const auto entry = entries_.find(sensor_id);
   if (entry == entries_.end()) return fail(ApiError::no_such_sensor, std::string(sensor_id));
@@ -212,7 +218,9 @@ Result<api::DriftReport> LiveCell::drift(std::string_view sensor_id) const {
 Result<api::CalibrationReport> LiveCell::start_calibration(const api::CalibrationRequest& request) {
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();
-  return jobs_.start(request, *(*entry)->sensor, guess_for(**entry, request));
+  auto started = jobs_.start(request, *(*entry)->sensor, guess_for(**entry, request));
+  if (started && log_.on_start) log_.on_start(*started);
+  return started;
 }
 
 Result<api::CalibrationReport> LiveCell::cancel_calibration(std::string_view id) {

@@ -55,6 +55,7 @@ struct CellLog {
   std::function<void(const api::PoseReport&)> on_pose;  ///< every change of a pose, its state or validity
   std::function<void(const std::string&)> on_error;     ///< what went wrong and was asked for by nobody
   RobotMotions::Log on_motion = [](const auto&, bool) {};
+  std::function<void(const api::CalibrationReport&)> on_start = {};  ///< of a calibration that was asked for
 };
 
 struct SensorSetup {
@@ -76,6 +77,9 @@ class LiveCell : public api::CellService {
   LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
            JointMapping mapping, CalibrationStore& store, Estimator estimator, CellLog log);
   ~LiveCell() override;
+
+  /// Of the sensors' threads, by id.
+  std::map<std::string, const Heartbeat*> heartbeats() const;
 
   LiveRobot& robot_link() { return robot_; }
   RobotMotions& robot_motions() { return motions_; }

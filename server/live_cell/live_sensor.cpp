@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/thread_name.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -54,7 +56,9 @@ void LiveSensor::start(std::unique_ptr<DepthSource> source) {
 
 void LiveSensor::run() {
   auto* source = source_.get();
+  name_thread("sensor " + settings_.id);
   while (!is_stopping_) {
+    heartbeat_.beat();
     if (auto frame = source->next(pending_.empty() ? kFramePatience : kJointsPatience))
       take_up(*std::move(frame));
     notice_loss(source->health());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "api/service/reports.hpp"
+#include "core/base/heartbeat.hpp"
 #include "core/calibration/check_pose.hpp"
 #include "drivers/sensor/depth_source.hpp"
 #include "server/live_cell/collect_task.hpp"
@@ -72,6 +73,8 @@ class LiveSensor {
   void join();
 
   const std::string& id() const { return settings_.id; }
+  /// Of its thread.
+  const Heartbeat& heartbeat() const { return heartbeat_; }
   const CameraModel& camera() const { return settings_.camera; }
   /// Where its calibrations tell their predicted error.
   const std::vector<WorkspacePoint>& workspace() const { return settings_.workspace; }
@@ -139,6 +142,7 @@ class LiveSensor {
   const CheckFunction check_;
   const std::function<void(const api::PoseReport&)> on_pose_;
   std::atomic<bool> is_stopping_{false};
+  Heartbeat heartbeat_;
 
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
