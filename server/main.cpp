@@ -13,6 +13,7 @@
 #include "server/config/print_config.hpp"
 #include "server/serve_command.hpp"
 #include "server/support_bundle_command.hpp"
+#include "server/token_command.hpp"
 
 namespace {
 
@@ -39,6 +40,9 @@ int dispatch(int argc, char** argv) {
   calibrd::CalibrateOptions calibrate_options;
   auto* calibrate = app.add_subcommand("calibrate", "Calibrate a recording and print the result as JSON");
   calibrd::add_calibrate_options(*calibrate, calibrate_options);
+  calibrd::TokenOptions token_options;
+  auto* token = app.add_subcommand("token", "Make, list and revoke the tokens of clients");
+  calibrd::add_token_options(*token, token_options);
   auto* reference = app.add_subcommand("config-reference", "Print docs/configuration.md");
   calibrd::SupportBundleOptions bundle_options;
   auto* bundle =
@@ -60,6 +64,7 @@ int dispatch(int argc, char** argv) {
   }
   if (bundle->parsed()) return calibrd::run_support_bundle(bundle_options);
   if (calibrate->parsed()) return calibrd::run_calibrate(calibrate_options);
+  if (token->parsed()) return calibrd::run_token(token_options);
   if (serve->parsed() || serve_options.check_config || serve_options.print_config)
     return calibrd::run_serve(serve_options);
   std::cerr << app.help();

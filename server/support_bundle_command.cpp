@@ -37,6 +37,12 @@ std::string default_name() {
   return "calibrd-support-" + utc_text(std::chrono::system_clock::now(), kUtcCompact) + ".tar";
 }
 
+std::string first_word_of(const std::string& file) {
+  std::string word;
+  std::ifstream(file) >> word;
+  return word;
+}
+
 /// Readable by its owner alone: it tells much of the cell.
 bool save(const std::string& file, const std::string& bytes) {
   std::ofstream stream(file, std::ios::binary);
@@ -57,6 +63,10 @@ void add_support_bundle_options(CLI::App& command, SupportBundleOptions& options
       .add_option("--set", options.daemon.overrides, "Set one key of the configuration, as for the daemon")
       ->type_name("SECTION.KEY=VALUE")
       ->allow_extra_args(false);
+  command
+      .add_option("--token-file", options.token_file,
+                  "File with a token of scope admin, where tokens are asked for")
+      ->type_name("FILE");
   command.add_option("--output", options.output, "File to write")->type_name("FILE");
 }
 
@@ -67,8 +77,8 @@ int run_support_bundle(const SupportBundleOptions& options) {
     return kUnusable;
   }
   const auto& server = loaded->config.server;
-  const auto fetched =
-      fetch(server.address, static_cast<std::uint16_t>(server.port), "/api/v1/support_bundle");
+  const auto fetched = fetch(server.address, static_cast<std::uint16_t>(server.port),
+                             "/api/v1/support_bundle", first_word_of(options.token_file));
   if (!fetched)
     std::cerr << "calibrd: the daemon does not answer (" << fetched.error().detail
               << "); the bundle holds what can be said without it. Add its log: journalctl -u calibrd\n";

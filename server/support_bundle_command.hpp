@@ -8,8 +8,9 @@
 namespace calibrd {
 
 struct SupportBundleOptions {
-  ServeOptions daemon;  ///< which one: its configuration
-  std::string output;   ///< file; empty: calibrd-support-TIME.tar in the current folder
+  ServeOptions daemon;     ///< which one: its configuration
+  std::string token_file;  ///< holds a token with the scope admin; empty: none is sent
+  std::string output;      ///< file; empty: calibrd-support-TIME.tar in the current folder
 };
 
 void add_support_bundle_options(CLI::App& command, SupportBundleOptions& options);

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "api/http/beating.hpp"
+#include "api/http/doorkeeper.hpp"
 #include "api/http/http_server_error.hpp"
 #include "api/http/session.hpp"
 #include "core/base/thread_name.hpp"
@@ -49,7 +50,8 @@ class HttpServer::Impl {
         log_(std::move(log)),
         watch_(watch ? *watch : own_watch_),
         workers_(std::make_unique<asio::thread_pool>(static_cast<std::size_t>(settings.workers))),
-        context_{settings_, router, log_, *workers_, watch_} {}
+        door_(settings_.door),
+        context_{settings_, router, log_, *workers_, door_, watch_} {}
 
   ~Impl() {
     stop(std::chrono::milliseconds(0));
@@ -149,7 +151,8 @@ class HttpServer::Impl {
   HttpWatch own_watch_;  // where nobody else watches
   HttpWatch& watch_;
   std::unique_ptr<asio::thread_pool> workers_;
-  SessionContext context_;  // used on the network thread only, as what follows up to port_
+  Doorkeeper door_;  // used on the network thread only, as what follows up to port_
+  SessionContext context_;
   std::list<Session> sessions_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};

@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "api/access/audit_record.hpp"
+#include "api/http/door_settings.hpp"
 #include "api/http/http_watch.hpp"
 #include "api/routes/router.hpp"
 #include "core/base/result.hpp"
@@ -24,6 +26,9 @@ struct HttpServerSettings {
   std::chrono::milliseconds write_timeout{60'000};
   std::uint32_t header_limit = 8 * 1024;
   std::uint64_t body_limit = 64 * 1024;
+  DoorSettings door;
+  /// Told of every request that was to change something, on a worker thread, before it is answered.
+  std::function<void(const AuditRecord&)> audit;
 };
 
 /// What was asked and answered, for the log.
@@ -32,7 +37,8 @@ struct AccessRecord {
   std::string path;
   int status = 0;
   std::string request_id;
-  int route = -1;  ///< place in Router::routes(); -1: none
+  int route = -1;       ///< place in Router::routes(); -1: none
+  std::string address;  ///< of the client
   std::chrono::microseconds duration{0};
 };
 

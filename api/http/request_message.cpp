@@ -16,7 +16,7 @@ void set_limits(RequestParser& parser, const HttpServerSettings& settings) {
   parser.body_limit(settings.body_limit);
 }
 
-std::optional<Request> request_of(http::request<http::string_body>& message) {
+std::optional<Request> request_of(const http::request<http::string_body>& message) {
   auto target = parse_target(message.target());
   if (!target) return std::nullopt;
   Request request{
@@ -26,7 +26,6 @@ std::optional<Request> request_of(http::request<http::string_body>& message) {
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
     request.headers[name] = std::string(field.value());
   }
-  request.body = std::move(message.body());
   return request;
 }
 

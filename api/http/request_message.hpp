@@ -17,8 +17,9 @@ using RequestParser = boost::beast::http::request_parser<boost::beast::http::str
 /// No request larger than the settings allow is read into memory.
 void set_limits(RequestParser& parser, const HttpServerSettings& settings);
 
-/// The request as the routes see it; nothing when its target cannot be decoded. Takes the body away.
-std::optional<Request> request_of(boost::beast::http::request<boost::beast::http::string_body>& message);
+/// The request as the routes see it, but for its body; nothing when its target cannot be decoded.
+std::optional<Request> request_of(
+    const boost::beast::http::request<boost::beast::http::string_body>& message);
 
 /// The problem a client is told when its request could not be read; nothing when nobody is there to be told.
 std::optional<ApiError> problem_of(boost::beast::error_code why);

@@ -24,6 +24,8 @@ namespace http = beast::http;
 
 constexpr std::size_t kReadAtOnce = 4096;
 constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
+constexpr auto kDrainTime = std::chrono::seconds(1);
+constexpr std::size_t kMostForgotten = 4 * 1024 * 1024;
 
 template <class Body>
 http::response<Body> heading(const Response& response, const std::string& request_id, bool keep_alive) {
@@ -46,20 +48,15 @@ Response answer_marked(const Router& router, const Request& request) {
   return router.answer(request);
 }
 
+bool may_change(const Request& request) {
+  return request.method != "GET" && request.method != "HEAD" && request.method != "OPTIONS";
+}
+
 }  // namespace
 
 asio::awaitable<void> Session::run() {
-  while (!context_.stopping) {  // no && with co_await: GCC 12 evaluates the latter whatever the former says
-    if (!co_await await_request()) break;
-    RequestParser parser;
-    request_id_ = context_.request_ids.next();
-    const auto failure = co_await read(parser);
-    if (failure) {
-      co_await refuse_unreadable(failure);
-      break;
-    }
-    if (!co_await answer(parser)) break;
-  }
+  bool goes_on = true;  // GCC 12 miscompiles co_await within a condition
+  while (goes_on && !context_.stopping) goes_on = co_await serve_one();
   beast::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
@@ -89,15 +86,83 @@ asio::awaitable<bool> Session::await_request() {
   co_return !failure && size > 0;
 }
 
-/// Reads the rest of the request: header and body each have a deadline in all, however slowly they trickle
-/// in.
-asio::awaitable<beast::error_code> Session::read(RequestParser& parser) {
+/// True: the connection goes on.
+asio::awaitable<bool> Session::serve_one() {
+  const bool has_come = co_await await_request();
+  if (!has_come) co_return false;
+  request_id_ = context_.request_ids.next();
+  HeaderGate gate(context_.settings.header_limit);
+  const auto verdict = co_await pass_header(gate);
+  if (verdict != HeaderGate::Verdict::passed) context_.watch.unreadable.add();
+  if (verdict == HeaderGate::Verdict::refused) co_await end_with(problem(gate.refusal()));
+  if (verdict != HeaderGate::Verdict::passed) co_return false;
+  RequestParser parser;
+  const auto failure = parse_header(gate, parser);
+  auto request = failure ? std::nullopt : request_of(parser.get());
+  if (!request) {
+    context_.watch.unreadable.add();
+    const auto why = failure ? problem_of(failure).value_or(ApiError::bad_request) : ApiError::bad_request;
+    co_await end_with(problem(why, failure ? std::string() : "the path cannot be decoded"));
+    co_return false;
+  }
+  if (is_request_id(request->header("x-request-id"))) request_id_ = request->header("x-request-id");
+  request->request_id = request_id_;
+  const bool goes_on = co_await serve(*std::move(request), parser);
+  co_return goes_on;
+}
+
+/// Reads until the gate has decided, with a deadline in all, however slowly the bytes trickle in. Neither
+/// passed nor refused: the client is gone, or too slow.
+asio::awaitable<HeaderGate::Verdict> Session::pass_header(HeaderGate& gate) {
+  stream_.expires_after(context_.settings.header_timeout);
+  for (;;) {
+    const auto come = buffer_.cdata();
+    const auto verdict = gate.look({static_cast<const char*>(come.data()), come.size()});
+    if (verdict != HeaderGate::Verdict::read_more) co_return verdict;
+    beast::error_code failure;
+    const auto space = buffer_.prepare(kReadAtOnce);
+    const auto size =
+        co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
+    buffer_.commit(size);
+    if (failure) co_return HeaderGate::Verdict::read_more;
+  }
+}
+
+beast::error_code Session::parse_header(const HeaderGate& gate, RequestParser& parser) {
   set_limits(parser, context_.settings);
   beast::error_code failure;
-  stream_.expires_after(context_.settings.header_timeout);
-  co_await http::async_read_header(stream_, buffer_, parser,
-                                   asio::redirect_error(asio::use_awaitable, failure));
-  if (failure) co_return failure;
+  buffer_.consume(parser.put(asio::buffer(buffer_.cdata().data(), gate.size()), failure));
+  if (!failure && !parser.is_header_done()) failure = http::error::bad_field;
+  return failure;
+}
+
+/// True: the connection goes on. A body is read only of a request that may come in.
+asio::awaitable<bool> Session::serve(Request request, RequestParser& parser) {
+  const auto begin = std::chrono::steady_clock::now();
+  const bool keep_alive = parser.get().keep_alive() && !context_.stopping;
+  auto refusal = context_.door.refuse(request, context_.router.scope(request), peer_);
+  if (refusal) {
+    log(request, *refusal, begin);
+    const bool is_whole = parser.is_done();
+    if (is_whole) co_return co_await write(*std::move(refusal), request.method == "HEAD", keep_alive);
+    co_await end_with(*std::move(refusal));
+    co_return false;
+  }
+  if (!parser.is_done()) {
+    const auto failure = co_await read_body(parser);
+    if (failure) context_.watch.unreadable.add();
+    const auto why = problem_of(failure);
+    if (why) co_await end_with(problem(*why));
+    if (failure) co_return false;
+    request.body = std::move(parser.get().body());
+  }
+  const bool goes_on = co_await answer(request, keep_alive);
+  co_return goes_on;
+}
+
+/// With a deadline in all, as the header.
+asio::awaitable<beast::error_code> Session::read_body(RequestParser& parser) {
+  beast::error_code failure;
   stream_.expires_after(context_.settings.body_timeout);
   if (wants_continue(parser.get())) {
     http::response<http::empty_body> go_on{http::status::continue_, 11};
@@ -109,23 +174,18 @@ asio::awaitable<beast::error_code> Session::read(RequestParser& parser) {
 }
 
 /// True: the connection goes on.
-asio::awaitable<bool> Session::answer(RequestParser& parser) {
+asio::awaitable<bool> Session::answer(const Request& request, bool keep_alive) {
   const auto begin = std::chrono::steady_clock::now();
-  auto message = parser.release();
-  const bool keep_alive = message.keep_alive() && !context_.stopping;
-  const bool head = message.method() == http::verb::head;
-  if (const auto id = message["X-Request-Id"]; is_request_id({id.data(), id.size()}))
-    request_id_ = std::string(id);
-  auto request = request_of(message);
-  if (!request)
-    co_return co_await write(problem(ApiError::bad_request, "the path cannot be decoded"), head, keep_alive);
-  request->request_id = request_id_;
   stream_.expires_never();
-  auto response = co_await dispatch(*request);
-  if (response.worth_waiting.count() > 0) response = co_await ask_again(*request, std::move(response));
-  log(*request, response, begin);
-  if (!response.stream) co_return co_await write(std::move(response), head, keep_alive);
-  co_await write_stream(std::move(response), head);
+  auto response = co_await dispatch(request);
+  if (response.worth_waiting.count() > 0) response = co_await ask_again(request, std::move(response));
+  if (context_.settings.audit && may_change(request)) co_await audit(request, response);
+  log(request, response, begin);
+  if (!response.stream) {
+    const bool goes_on = co_await write(std::move(response), request.method == "HEAD", keep_alive);
+    co_return goes_on;
+  }
+  co_await write_stream(request, std::move(response));
   co_return false;
 }
 
@@ -135,17 +195,32 @@ void Session::log(const Request& request, const Response& response,
   const LogScope scope({request.request_id, {}});
   const auto duration = std::chrono::steady_clock::now() - begin;
   context_.log({request.method, request.path, response.status, request.request_id, response.route,
-                std::chrono::duration_cast<std::chrono::microseconds>(duration)});
+                peer_.address, std::chrono::duration_cast<std::chrono::microseconds>(duration)});
+}
+
+/// On a worker: it waits for the disk.
+asio::awaitable<void> Session::audit(const Request& request, const Response& response) {
+  AuditRecord record{
+      request.caller, peer_.address, request.request_id, request.method, request.path, response.status, {}};
+  for (const auto& [name, value] : response.headers)
+    if (name == "Location") record.location = value;
+  auto work = [&write = context_.settings.audit, &record]() -> asio::awaitable<void> {
+    write(record);
+    co_return;
+  };
+  co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
 }
 
 /// Its end is that of the connection.
-asio::awaitable<void> Session::write_stream(Response response, bool head) {
+asio::awaitable<void> Session::write_stream(const Request& request, Response response) {
+  const bool head = request.method == "HEAD";
+  const auto scope = context_.router.scope(request);
   auto message = heading<http::empty_body>(response, request_id_, false);
   stream_.expires_after(context_.settings.write_timeout);
   beast::error_code failure;
   co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
   asio::steady_timer pause(stream_.get_executor());
-  while (!failure && !head && !context_.stopping) {
+  while (!failure && !head && !context_.stopping && context_.door.still_admits(request, scope)) {
     const std::string text = response.stream->next();
     if (!text.empty()) {
       stream_.expires_after(context_.settings.write_timeout);
@@ -196,9 +271,22 @@ asio::awaitable<bool> Session::write(Response response, bool head, bool keep_ali
   co_return keep_alive && !failure;
 }
 
-asio::awaitable<void> Session::refuse_unreadable(beast::error_code why) {
-  context_.watch.unreadable.add();
-  if (const auto error = problem_of(why)) co_await write(problem(*error, why.message()), false, false);
+/// Answers and ends the connection. Closed with bytes unread it would be reset, and the answer be lost with
+/// it; so what still comes is read and forgotten, for a moment.
+asio::awaitable<void> Session::end_with(Response response) {
+  co_await write(std::move(response), false, false);
+  beast::error_code failure;
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, failure);
+  idle_ = true;
+  stream_.expires_after(kDrainTime);
+  std::size_t forgotten = 0;
+  while (!failure && forgotten < kMostForgotten && !context_.stopping) {
+    buffer_.clear();
+    const auto space = buffer_.prepare(kReadAtOnce);
+    const auto size =
+        co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
+    forgotten += size;
+  }
 }
 
 }  // namespace calibrd::api

@@ -6,7 +6,9 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 
+#include "api/http/header_gate.hpp"
 #include "api/http/http_server.hpp"
+#include "api/http/peer.hpp"
 #include "api/http/request_id.hpp"
 #include "api/http/request_message.hpp"
 
@@ -18,6 +20,7 @@ struct SessionContext {
   const Router& router;
   const std::function<void(const AccessRecord&)>& log;
   boost::asio::thread_pool& workers;
+  Doorkeeper& door;
   HttpWatch& watch;
   RequestIds request_ids = {};
   bool stopping = false;
@@ -27,7 +30,7 @@ struct SessionContext {
 class Session {
  public:
   Session(boost::asio::ip::tcp::socket socket, SessionContext& context)
-      : stream_(std::move(socket)), context_(context) {}
+      : stream_(std::move(socket)), peer_(peer_of(stream_.socket())), context_(context) {}
 
   boost::asio::awaitable<void> run();
   /// Answers 503 and closes: there are too many connections.
@@ -38,19 +41,28 @@ class Session {
   void close() { stream_.close(); }
 
  private:
+  boost::asio::awaitable<bool> serve_one();
   boost::asio::awaitable<bool> await_request();
-  boost::asio::awaitable<boost::beast::error_code> read(RequestParser& parser);
-  boost::asio::awaitable<bool> answer(RequestParser& parser);
+  boost::asio::awaitable<HeaderGate::Verdict> pass_header(HeaderGate& gate);
+  boost::beast::error_code parse_header(const HeaderGate& gate, RequestParser& parser);
+  boost::asio::awaitable<bool> serve(Request request, RequestParser& parser);
+  boost::asio::awaitable<boost::beast::error_code> read_body(RequestParser& parser);
+  boost::asio::awaitable<bool> answer(const Request& request, bool keep_alive);
   void log(const Request& request, const Response& response,
            std::chrono::steady_clock::time_point begin) const;
+  boost::asio::awaitable<void> audit(const Request& request, const Response& response);
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
-  boost::asio::awaitable<void> write_stream(Response response, bool head);
-  boost::asio::awaitable<void> refuse_unreadable(boost::beast::error_code why);
+  boost::asio::awaitable<void> write_stream(const Request& request, Response response);
+  boost::asio::awaitable<void> end_with(Response response);
+
+  /// Bytes that have come and are not parsed yet: no line of a chunked body may be longer.
+  static constexpr std::size_t kMostBuffered = 128 * 1024;
 
   boost::beast::tcp_stream stream_;
-  boost::beast::flat_buffer buffer_;
+  const Peer peer_;
+  boost::beast::flat_buffer buffer_{kMostBuffered};
   SessionContext& context_;
   bool idle_ = true;
   std::string request_id_;  // of the request being read or answered

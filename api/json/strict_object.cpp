@@ -20,6 +20,15 @@ namespace {
 namespace json = boost::json;
 
 constexpr std::size_t kShownBytes = 60;
+/// The deepest body there is holds a matrix in an object in the object: anything much deeper is an attack on
+/// whoever walks through it.
+constexpr std::size_t kMostNested = 16;
+
+json::parse_options parse_options() {
+  json::parse_options options;
+  options.max_depth = kMostNested;
+  return options;
+}
 
 /// The value under a key; nothing where it is absent or null.
 const json::value* find(const json::object& object, std::string_view key) {
@@ -74,7 +83,7 @@ Result<json::object> read_body(std::string_view body, std::string_view content_t
                                std::initializer_list<std::string> known) {
   if (body.empty()) return json::object{};
   if (!is_json(content_type)) return fail(ApiError::wrong_content_type, in_ascii(content_type));
-  json::parser parser;
+  json::parser parser({}, parse_options());
   boost::system::error_code failure;
   const auto used = parser.write_some(body.data(), body.size(), failure);
   const auto rest = body.substr(used).find_first_not_of(" \t\r\n");

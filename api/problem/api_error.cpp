@@ -15,7 +15,7 @@ struct Row {
 
 // clang-format off
 constexpr std::array kTable{
-    Row{ApiError::bad_request, {400, "bad_request", "The request is not valid HTTP.", "Send an HTTP/1.1 request."}},
+    Row{ApiError::bad_request, {400, "bad_request", "The request is not valid HTTP.", "Send a well-formed HTTP/1.1 request, as every HTTP library does; docs/security.md lists what is refused."}},
     Row{ApiError::no_such_route, {404, "not_found", "There is nothing at this path.", "Check the path against docs/api.md."}},
     Row{ApiError::method_not_allowed, {405, "method_not_allowed", "This path does not take this method.", "Use one of the methods in the Allow header."}},
     Row{ApiError::no_such_sensor, {404, "no_such_sensor", "No sensor has this id.", "Use an id of GET /api/v1/sensors."}},
@@ -58,6 +58,12 @@ constexpr std::array kTable{
     Row{ApiError::header_too_large, {431, "header_too_large", "The request header is too large.", "Send at most 8 KiB of header."}},
     Row{ApiError::body_too_large, {413, "body_too_large", "The request body is too large.", "Send at most 64 KiB."}},
     Row{ApiError::too_many_connections, {503, "too_many_connections", "Too many connections are open.", "Reuse connections, or raise server.max_connections."}},
+    Row{ApiError::too_many_requests, {429, "too_many_requests", "Too many requests come from this address.", "Ask less often, or with ?wait= or If-None-Match, or raise server.rate_limit (server.loopback_rate_limit on the same machine)."}},
+    Row{ApiError::token_needed, {401, "token_needed", "This daemon answers only clients with a token.", "Send the header Authorization: Bearer TOKEN; whoever runs the daemon makes one with `calibrd token create`."}},
+    Row{ApiError::token_unknown, {401, "token_unknown", "This token is not known here.", "Send a token of this daemon, as Authorization: Bearer TOKEN; it may have been revoked: `calibrd token list`."}},
+    Row{ApiError::scope_too_small, {403, "scope_too_small", "This token does not allow this.", "Use a token with the scope that is named: `calibrd token create NAME --scope SCOPE`."}},
+    Row{ApiError::wrong_host, {421, "wrong_host", "This daemon does not go by the name of the Host header.", "Use its address or localhost, or add the name to server.hosts."}},
+    Row{ApiError::wrong_origin, {403, "wrong_origin", "A page of another site must not speak to this daemon.", "Ask from a program, or from a page under the daemon's own name; a proxy must pass the Host header on, or its name be in server.hosts."}},
     Row{ApiError::shutting_down, {503, "shutting_down", "The daemon is ending.", "Try again when it has been started again."}},
     Row{ApiError::internal, {500, "internal", "Something unexpected went wrong.", "Report it with the log of the daemon around this time."}},
 };

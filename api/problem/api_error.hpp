@@ -54,6 +54,12 @@ enum class ApiError {
   header_too_large,
   body_too_large,
   too_many_connections,
+  too_many_requests,
+  token_needed,
+  token_unknown,
+  scope_too_small,
+  wrong_host,
+  wrong_origin,
   shutting_down,
   internal,
 };

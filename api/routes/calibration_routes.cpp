@@ -173,27 +173,28 @@ Response answer_history(const Request& request, const PathValues& values, CellSe
 }  // namespace
 
 void add_calibration_routes(Router& router, CellService& service) {
-  router.add("POST", "/api/v1/sensors/{id}/calibrations", Cost::slow,
+  router.add("POST", "/api/v1/sensors/{id}/calibrations", Scope::calibrate, Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                return answer_start(request, values, service);
              });
-  router.add("GET", "/api/v1/sensors/{id}/calibrations", Cost::slow,
+  router.add("GET", "/api/v1/sensors/{id}/calibrations", Scope::read, Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                return answer_history(request, values, service);
              });
   router.add(
-      "POST", "/api/v1/cell/calibrations", Cost::slow,
+      "POST", "/api/v1/cell/calibrations", Scope::calibrate, Cost::slow,
       [&service](const Request& request, const PathValues&) { return answer_start_all(request, service); });
-  const auto add_one = [&router](const char* method, const char* path, CalibrationCall call) {
-    router.add(method, path, Cost::slow,
+  const auto add_one = [&router](const char* method, const char* path, Scope scope, CalibrationCall call) {
+    router.add(method, path, scope, Cost::slow,
                [call = std::move(call)](const Request& request, const PathValues& values) {
                  return answer_one(request, values, call);
                });
   };
-  add_one("GET", "/api/v1/calibrations/{id}", [&](const auto& id) { return service.calibration(id); });
-  add_one("DELETE", "/api/v1/calibrations/{id}",
+  add_one("GET", "/api/v1/calibrations/{id}", Scope::read,
+          [&](const auto& id) { return service.calibration(id); });
+  add_one("DELETE", "/api/v1/calibrations/{id}", Scope::calibrate,
           [&](const auto& id) { return service.cancel_calibration(id); });
-  add_one("POST", "/api/v1/calibrations/{id}/activate",
+  add_one("POST", "/api/v1/calibrations/{id}/activate", Scope::calibrate,
           [&](const auto& id) { return service.activate_calibration(id); });
 }
 

@@ -70,7 +70,7 @@ json::object drift_json(const DriftReport& drift) {
 }  // namespace
 
 void add_drift_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/sensors/{id}/drift", Cost::quick,
+  router.add("GET", "/api/v1/sensors/{id}/drift", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                if (auto unknown = unknown_query(request, {})) return problem(*unknown);
                const auto drift = service.drift(values[0]);

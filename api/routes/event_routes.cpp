@@ -50,7 +50,7 @@ Response answer(const Request& request, const EventHub& events) {
 }  // namespace
 
 void add_event_routes(Router& router, const EventHub& events) {
-  router.add("GET", "/api/v1/events", Cost::quick,
+  router.add("GET", "/api/v1/events", Scope::read, Cost::quick,
              [&events](const Request& request, const PathValues&) { return answer(request, events); });
 }
 

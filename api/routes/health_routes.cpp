@@ -39,6 +39,10 @@ Response answer_alive(const Request& request, const OperationsService& operation
 /// dead.
 Response answer_ready(const Request& request, CellService& service, const OperationsService& operations) {
   if (auto unknown = unknown_query(request, {"verbose"})) return problem(*unknown);
+  // Who only asks whether to send traffic needs no token; what is wrong with the cell is not for everybody.
+  if (request.query.contains("verbose") && request.granted < Scope::read)
+    return problem(request.headers.contains("authorization") ? ApiError::token_unknown
+                                                             : ApiError::token_needed);
   const auto cell = service.cell();
   bool ready = cell.robot.link_state == "streaming";
   json::array dependencies{dependency_json("robot", ready, cell.robot.link_state, cell.robot.link_reason)};
@@ -62,10 +66,10 @@ Response answer_ready(const Request& request, CellService& service, const Operat
 }  // namespace
 
 void add_health_routes(Router& router, CellService& service, const OperationsService& operations) {
-  router.add("GET", "/livez", Cost::quick, [&operations](const Request& request, const PathValues&) {
-    return answer_alive(request, operations);
-  });
-  router.add("GET", "/readyz", Cost::quick,
+  router.add(
+      "GET", "/livez", Scope::open, Cost::quick,
+      [&operations](const Request& request, const PathValues&) { return answer_alive(request, operations); });
+  router.add("GET", "/readyz", Scope::open, Cost::quick,
              [&service, &operations](const Request& request, const PathValues&) {
                return answer_ready(request, service, operations);
              });

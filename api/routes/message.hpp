@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/access/scope.hpp"
+
 namespace calibrd::api {
 
 /// An HTTP request as the routes see it: decoded, complete, without a socket.
@@ -19,7 +21,9 @@ struct Request {
   std::map<std::string, std::string> query;
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
-  std::string request_id = {};  ///< of this request in logs and answers
+  std::string request_id = {};   ///< of this request in logs and answers
+  std::string caller = {};       ///< name of the token, "local" where none is asked for; empty: unknown
+  Scope granted = Scope::admin;  ///< what the caller may do
 
   /// The header's value, or an empty string.
   const std::string& header(const std::string& lower_case_name) const {

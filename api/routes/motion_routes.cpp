@@ -89,18 +89,18 @@ Response answer_one(const Request& request, const Result<MotionReport>& motion) 
 /// Stopping must never wait behind anything slow: it is made on the network thread.
 void add_motion_routes(Router& router, CellService& service) {
   router.add(
-      "POST", "/api/v1/robot/motions", Cost::slow,
+      "POST", "/api/v1/robot/motions", Scope::admin, Cost::slow,
       [&service](const Request& request, const PathValues&) { return answer_start(request, service); });
-  router.add("GET", "/api/v1/robot/motions", Cost::quick,
+  router.add("GET", "/api/v1/robot/motions", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues&) {
                if (auto unknown = unknown_query(request, {})) return problem(*unknown);
                return json_response(200, motions_json(service.motions()));
              });
-  router.add("GET", "/api/v1/robot/motions/{id}", Cost::quick,
+  router.add("GET", "/api/v1/robot/motions/{id}", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                return answer_one(request, service.motion(values[0]));
              });
-  router.add("DELETE", "/api/v1/robot/motions/{id}", Cost::quick,
+  router.add("DELETE", "/api/v1/robot/motions/{id}", Scope::calibrate, Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                return answer_one(request, service.stop_motion(values[0]));
              });

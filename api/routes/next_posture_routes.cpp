@@ -26,7 +26,7 @@ Response answer_next_posture(const Request& request, const PathValues& values, C
 }  // namespace
 
 void add_next_posture_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/sensors/{id}/next-posture", Cost::slow,
+  router.add("GET", "/api/v1/sensors/{id}/next-posture", Scope::read, Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                return answer_next_posture(request, values, service);
              });

@@ -82,7 +82,7 @@ Response answer_obstacles(const Request& request, CellService& service) {
 
 void add_obstacle_routes(Router& router, CellService& service) {
   router.add(
-      "GET", "/api/v1/cell/obstacles", Cost::slow,
+      "GET", "/api/v1/cell/obstacles", Scope::read, Cost::slow,
       [&service](const Request& request, const PathValues&) { return answer_obstacles(request, service); });
 }
 

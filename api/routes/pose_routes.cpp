@@ -172,7 +172,7 @@ Response answer_pose(const Request& request, const PathValues& values, CellServi
 }  // namespace
 
 void add_pose_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/sensors/{id}/pose", Cost::quick,
+  router.add("GET", "/api/v1/sensors/{id}/pose", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                return answer_pose(request, values, service);
              });

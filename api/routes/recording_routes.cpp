@@ -76,11 +76,11 @@ Response answer_cloud(CloudKind kind, const Request& request, const PathValues& 
 }  // namespace
 
 void add_recording_routes(Router& router, CellService& service) {
-  router.add("POST", "/api/v1/sensors/{id}/captures", Cost::slow,
+  router.add("POST", "/api/v1/sensors/{id}/captures", Scope::calibrate, Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                return answer_capture(request, values, service);
              });
-  router.add("GET", "/api/v1/calibrations/{id}/capture", Cost::slow,
+  router.add("GET", "/api/v1/calibrations/{id}/capture", Scope::read, Cost::slow,
              [&service](const Request& request, const PathValues& values) {
                if (auto unknown = unknown_query(request, {})) return problem(*unknown);
                return archive_response(service.calibration_capture(values[0]));
@@ -89,7 +89,7 @@ void add_recording_routes(Router& router, CellService& service) {
                               std::pair{"virtual", CloudKind::virtual_},
                               std::pair{"residual", CloudKind::residual}};
   for (const auto& [name, kind] : kKinds)
-    router.add("GET", std::string("/api/v1/sensors/{id}/clouds/") + name, Cost::slow,
+    router.add("GET", std::string("/api/v1/sensors/{id}/clouds/") + name, Scope::read, Cost::slow,
                [&service, kind = kind](const Request& request, const PathValues& values) {
                  return answer_cloud(kind, request, values, service);
                });

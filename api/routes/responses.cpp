@@ -25,9 +25,14 @@ Response problem(const Error& error) {
                     {"code", entry.code},
                     {"detail", known ? error.detail : error.message()},
                     {"remedy", entry.remedy}};
-  return {entry.status,
-          {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}},
-          json_text(body)};
+  Response response{entry.status,
+                    {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}},
+                    json_text(body)};
+  if (entry.status == 401)  // RFC 6750
+    response.headers.emplace_back("WWW-Authenticate", error.code == ApiError::token_unknown
+                                                          ? R"(Bearer realm="calibrd", error="invalid_token")"
+                                                          : R"(Bearer realm="calibrd")");
+  return response;
 }
 
 Response problem(ApiError error, std::string detail) { return problem(fail(error, std::move(detail))); }

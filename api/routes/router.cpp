@@ -46,9 +46,9 @@ std::string path_of(const Route& route) {
   return path;
 }
 
-void Router::add(std::string method, std::string_view path, Cost cost,
+void Router::add(std::string method, std::string_view path, Scope scope, Cost cost,
                  std::function<Response(const Request&, const PathValues&)> answer) {
-  routes_.push_back({std::move(method), split(path), cost, std::move(answer)});
+  routes_.push_back({std::move(method), split(path), scope, cost, std::move(answer)});
 }
 
 const Route* Router::find(const std::string& method, const std::vector<std::string>& segments,
@@ -77,6 +77,12 @@ Cost Router::cost(const Request& request) const {
   PathValues values;
   const auto* route = find(effective_method(request), split(request.path), values);
   return route ? route->cost : Cost::quick;
+}
+
+Scope Router::scope(const Request& request) const {
+  PathValues values;
+  const auto* route = find(effective_method(request), split(request.path), values);
+  return route ? route->scope : Scope::read;
 }
 
 Response Router::without_route(const Request& request, const std::vector<std::string>& segments) const {

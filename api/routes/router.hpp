@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/access/scope.hpp"
 #include "api/routes/message.hpp"
 
 namespace calibrd::api {
@@ -20,6 +21,7 @@ enum class Cost { quick, slow };
 struct Route {
   std::string method;
   std::vector<std::string> segments;  ///< {"api", "v1", "sensors", "{id}"}
+  Scope scope;                        ///< what its clients must be allowed
   Cost cost;
   std::function<Response(const Request&, const PathValues&)> answer;
 };
@@ -30,7 +32,7 @@ std::string path_of(const Route& route);
 /// The table of routes. Filled once, then safe to read from any thread.
 class Router {
  public:
-  void add(std::string method, std::string_view path, Cost cost,
+  void add(std::string method, std::string_view path, Scope scope, Cost cost,
            std::function<Response(const Request&, const PathValues&)> answer);
 
   /// Answers any request: an unknown path is 404, a known path with another method 405 with Allow, HEAD as
@@ -41,6 +43,8 @@ class Router {
 
   /// In the order they were added.
   const std::vector<Route>& routes() const { return routes_; }
+  /// What the client of this request must be allowed; to be told that there is no such route takes `read`.
+  Scope scope(const Request& request) const;
 
  private:
   const Route* find(const std::string& method, const std::vector<std::string>& segments,

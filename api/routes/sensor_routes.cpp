@@ -41,14 +41,14 @@ Response answer_cell(const Request& request, CellService& service) {
 }  // namespace
 
 void add_sensor_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/sensors", Cost::quick, [&service](const Request& request, const PathValues&) {
-    return answer_sensors(request, service);
-  });
-  router.add("GET", "/api/v1/sensors/{id}", Cost::quick,
+  router.add(
+      "GET", "/api/v1/sensors", Scope::read, Cost::quick,
+      [&service](const Request& request, const PathValues&) { return answer_sensors(request, service); });
+  router.add("GET", "/api/v1/sensors/{id}", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues& values) {
                return answer_sensor(request, values, service);
              });
-  router.add("GET", "/api/v1/cell", Cost::quick,
+  router.add("GET", "/api/v1/cell", Scope::read, Cost::quick,
              [&service](const Request& request, const PathValues&) { return answer_cell(request, service); });
 }
 

@@ -87,10 +87,11 @@ Response answer_cross_checks(const Request& request, CellService& service) {
 }  // namespace
 
 void add_several_sensors_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/cell/cloud", Cost::slow, [&service](const Request& request, const PathValues&) {
-    return answer_merged_cloud(request, service);
-  });
-  router.add("GET", "/api/v1/cell/cross-checks", Cost::slow,
+  router.add("GET", "/api/v1/cell/cloud", Scope::read, Cost::slow,
+             [&service](const Request& request, const PathValues&) {
+               return answer_merged_cloud(request, service);
+             });
+  router.add("GET", "/api/v1/cell/cross-checks", Scope::read, Cost::slow,
              [&service](const Request& request, const PathValues&) {
                return answer_cross_checks(request, service);
              });

@@ -20,6 +20,11 @@ struct ServerConfig {
   std::string address = "127.0.0.1";
   int port = 8080;
   int max_connections = 64;
+  std::filesystem::path tokens_file;
+  bool allow_unauthenticated = false;
+  std::vector<std::string> hosts;
+  int rate_limit = 2000;
+  int loopback_rate_limit = 20'000;
 };
 
 /// How one joint of the model follows the controller: see JointMappingEntry.
@@ -126,6 +131,11 @@ struct StorageConfig {
   int captures_max_mb = 2000;
 };
 
+struct AuditConfig {
+  int max_file_mb = 10;
+  int files = 10;
+};
+
 struct LogConfig {
   std::string level = "info";
   std::string format = "text";
@@ -141,6 +151,7 @@ struct Config {
   CalibrationConfig calibration;
   MotionConfig motion;
   StorageConfig storage;
+  AuditConfig audit;
   LogConfig log;
 };
 

@@ -27,10 +27,14 @@ std::vector<std::string> config_warnings(const Config& config) {
       warnings.push_back("sensors." + id + ": distortion is all zero: this looks" + kWhy +
                          " (right only where the device removes the distortion itself)");
   }
-  const bool is_open = config.server.address != "127.0.0.1" && config.server.address != "::1";
+  const bool is_reached = config.server.address != "127.0.0.1" && config.server.address != "::1";
+  const bool is_open = is_reached && config.server.tokens_file.empty();
+  if (is_open)
+    warnings.push_back("server.allow_unauthenticated with server.address = \"" + config.server.address +
+                       "\": whoever reaches the port may do everything, without a token");
   if (config.motion.enabled && is_open)
     warnings.push_back("motion.enabled with server.address = \"" + config.server.address +
-                       "\": the HTTP interface has no users, so whoever reaches the port can move the robot");
+                       "\": no token is asked for, so whoever reaches the port can move the robot");
   return warnings;
 }
 

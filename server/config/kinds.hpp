@@ -38,6 +38,8 @@ Kind<Duration> duration(Duration min, Duration max);
 /// Relative paths are made absolute: from the folder of the file that holds them, or the working directory.
 Kind<std::filesystem::path> path();
 Kind<std::vector<std::filesystem::path>> paths();
+/// ["one", "two"]
+Kind<std::vector<std::string>> texts();
 Kind<std::array<double, 5>> five_reals();
 /// [x, y, z]
 Kind<std::array<double, 3>> three_reals();

@@ -52,5 +52,7 @@ class SectionDeclarer {
 // Parts of the table in files of their own.
 void declare_drift(std::vector<Setting>& table);
 void declare_motion(std::vector<Setting>& table);
+void declare_server(std::vector<Setting>& table);
+void declare_audit(std::vector<Setting>& table);
 
 }  // namespace calibrd

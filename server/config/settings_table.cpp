@@ -8,17 +8,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-void declare_server(std::vector<Setting>& table) {
-  SectionDeclarer<ServerConfig> key(table, {"server"},
-                                    [](Config& c, const Names&) -> ServerConfig& { return c.server; });
-  key("address", &ServerConfig::address, text(), "",
-      "Address the HTTP server listens on. 0.0.0.0 opens it to the network.");
-  key("port", &ServerConfig::port, integer(0, 65535), "",
-      "TCP port of the HTTP server. 0 takes any free port and logs it.");
-  key("max_connections", &ServerConfig::max_connections, integer(1, 10000), "",
-      "Connections served at a time; more are answered 503.");
-}
-
 void declare_robot(std::vector<Setting>& table) {
   SectionDeclarer<RobotConfig> key(table, {"robot"},
                                    [](Config& c, const Names&) -> RobotConfig& { return c.robot; });
@@ -226,6 +215,7 @@ void declare_rest(std::vector<Setting>& table) {
           "The views of a calibration are kept in captures/ beside it for this long. 0s: not at all.");
   storage("captures_max_mb", &StorageConfig::captures_max_mb, integer(0, 10'000'000), "MB",
           "All of them take no more; the oldest go first. 0: none are kept.");
+  declare_audit(table);
   SectionDeclarer<LogConfig> log(table, {"log"}, [](Config& c, const Names&) -> LogConfig& { return c.log; });
   log("level", &LogConfig::level, one_of({"trace", "debug", "info", "warn", "error"}), "",
       "Least severe message that is logged (to stderr).");

@@ -57,6 +57,9 @@ api::HttpServerSettings http_settings(const Config& config) {
   settings.address = config.server.address;
   settings.port = static_cast<std::uint16_t>(config.server.port);
   settings.max_connections = config.server.max_connections;
+  settings.door.hosts = config.server.hosts;
+  settings.door.rate_limit = config.server.rate_limit;
+  settings.door.loopback_rate_limit = config.server.loopback_rate_limit;
   // Each sensor may have a recording that waits for the robot; what else is slow must find a worker beside
   // them.
   settings.workers += static_cast<int>(config.sensors.size());

@@ -16,6 +16,9 @@
 #include "server/live_cell/live_cell.hpp"
 #include "server/operations/operations.hpp"
 #include "server/operations/service_watch.hpp"
+#include "server/security/audit_log.hpp"
+#include "server/security/exposure.hpp"
+#include "server/security/token_store.hpp"
 #include "server/storage/calibration_store.hpp"
 #include "server/storage/store_watch.hpp"
 
@@ -54,9 +57,22 @@ Status check_sensors(const Config& config) {
   return Done{};
 }
 
+Status check_tokens(const ServerConfig& server) {
+  if (server.tokens_file.empty()) return Done{};
+  if (const auto tokens = read_tokens(server.tokens_file); !tokens) return tokens.error();
+  return Done{};
+}
+
+AuditSettings audit_settings(const Config& config) {
+  return {config.storage.path.parent_path() / "audit.jsonl",
+          static_cast<std::uint64_t>(config.audit.max_file_mb) * 1'000'000, config.audit.files};
+}
+
 }  // namespace
 
 Status check_config(const Config& config) {
+  if (auto status = check_exposure(config.server); !status) return status;
+  if (auto status = check_tokens(config.server); !status) return status;
   const auto model = load_model(config.robot);
   if (!model) return model.error();
   const auto mapping = make_mapping(config, *model);
@@ -79,6 +95,7 @@ struct Daemon::Parts {
   std::unique_ptr<RobotLink> link;
   std::unique_ptr<FeedThread> feed;
   api::Router router;
+  std::unique_ptr<AuditLog> audit;
   std::unique_ptr<api::HttpServer> http;
   std::unique_ptr<ServiceWatch> service_watch;
 
@@ -153,7 +170,25 @@ struct Daemon::Parts {
     return Done{};
   }
 
+  /// Who may come in, and who is told of what they do.
+  Status make_doors(const Config& config, api::HttpServerSettings& settings) {
+    if (!config.server.tokens_file.empty()) {
+      auto tokens = TokenStore::open(config.server.tokens_file, log_security);
+      if (!tokens) return tokens.error();
+      settings.door.authenticator = *std::move(tokens);
+    } else if (!is_loopback(config.server.address)) {
+      log_security(
+          "server.allow_unauthenticated: whoever reaches " + config.server.address + " may do everything",
+          false);
+    }
+    audit = std::make_unique<AuditLog>(audit_settings(config), log_error);
+    settings.audit = [this](const api::AuditRecord& record) { audit->write(record); };
+    return Done{};
+  }
+
   Status make_http(const Config& config) {
+    auto settings = http_settings(config);
+    if (auto status = make_doors(config, settings); !status) return status;
     feed = std::make_unique<FeedThread>(*cell);
     router = api::make_routes(*cell, feed->hub(), *operations);
     auto& pulse = operations->pulse();
@@ -165,7 +200,7 @@ struct Daemon::Parts {
       operations->note(record);
       log_access(record);
     };
-    auto server = api::HttpServer::start(http_settings(config), router, on_answer, &operations->http_watch());
+    auto server = api::HttpServer::start(settings, router, on_answer, &operations->http_watch());
     if (!server) return server.error();
     http = *std::move(server);
     return Done{};
@@ -196,6 +231,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::s
                                               const ServiceManager& manager) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::make_unique<Parts>()));
   auto& parts = *daemon->parts_;
+  if (auto status = check_exposure(config.server); !status) return status.error();
   if (auto status = check_sensors(config); !status) return status.error();
   parts.make_operations(config, version, configuration);
   if (auto status = parts.make_model(config); !status) return status.error();

@@ -43,6 +43,10 @@ void log_motion(const std::string& line, bool is_well) {
   spdlog::log(is_well ? spdlog::level::info : spdlog::level::warn, "{}", line);
 }
 
+void log_security(const std::string& message, bool is_well) {
+  spdlog::log(is_well ? spdlog::level::info : spdlog::level::warn, "{}", message);
+}
+
 void log_storage(const api::StorageReport& storage) {
   if (storage.state == "good")
     spdlog::info("storage: good");

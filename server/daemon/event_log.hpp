@@ -20,6 +20,8 @@ void log_calibration(const api::CalibrationReport& calibration);
 void log_error(const std::string& message);
 /// What is done to the robot: every command.
 void log_motion(const std::string& line, bool is_well);
+/// Of tokens and doors.
+void log_security(const std::string& message, bool is_well);
 void log_storage(const api::StorageReport& storage);
 void log_pose(const api::PoseReport& pose);
 /// Threads that must go on and do not; none: all go on again.

@@ -33,7 +33,8 @@ asio::ip::address address_of(const std::string& configured, ErrorCode& failure) 
 
 }  // namespace
 
-Result<std::string> fetch(const std::string& address, std::uint16_t port, const std::string& path) {
+Result<std::string> fetch(const std::string& address, std::uint16_t port, const std::string& path,
+                          const std::string& token) {
   ErrorCode failure;
   const auto host = address_of(address, failure);
   if (failure) return unreachable(address + ": " + failure.message());
@@ -44,7 +45,8 @@ Result<std::string> fetch(const std::string& address, std::uint16_t port, const 
   setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
   setsockopt(socket.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
   http::request<http::empty_body> request{http::verb::get, path, 11};
-  request.set(http::field::host, host.to_string());
+  request.set(http::field::host, host.is_v6() ? "[" + host.to_string() + "]" : host.to_string());
+  if (!token.empty()) request.set(http::field::authorization, "Bearer " + token);
   request.set(http::field::connection, "close");
   http::write(socket, request, failure);
   if (failure) return unreachable("the request could not be sent: " + failure.message());

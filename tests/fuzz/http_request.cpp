@@ -4,6 +4,7 @@
 // over a fake cell. Input: bit 0 whether there is a pose; how the bytes are cut; then the bytes.
 #include <boost/asio/buffer.hpp>
 
+#include "api/http/header_gate.hpp"
 #include "api/http/request_message.hpp"
 #include "api/routes/routes.hpp"
 #include "tests/api/fake_cell.hpp"
@@ -15,6 +16,18 @@ namespace {
 
 using namespace calibrd;
 using boost::beast::error_code;
+
+/// Whether the gate lets the header through, however it is cut.
+bool passes_gate(std::string_view bytes, std::size_t piece) {
+  api::HeaderGate gate(api::HttpServerSettings{}.header_limit);
+  for (std::size_t shown = 0; shown < bytes.size();) {
+    shown = std::min(shown + piece, bytes.size());
+    const auto verdict = gate.look(bytes.substr(0, shown));
+    if (verdict == api::HeaderGate::Verdict::passed) return true;
+    if (verdict == api::HeaderGate::Verdict::refused) return false;
+  }
+  return false;
+}
 
 /// Feeds the parser until a request is complete. Returns what is left of the bytes, or nothing when they hold
 /// no whole request.
@@ -49,14 +62,17 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const api::Router router = api::make_routes(cell, events, operations);
   std::optional<std::string_view> rest = input.text();
   while (rest && !rest->empty()) {
+    if (!passes_gate(*rest, piece)) break;
     api::RequestParser parser;
     api::set_limits(parser, {});
     parser.eager(true);
     rest = read(parser, *rest, piece);
     if (!rest) break;
     auto message = parser.release();
-    const auto request = api::request_of(message);
+    auto request = api::request_of(message);
     if (!request) continue;
+    request->body = std::move(message.body());
+    router.scope(*request);
     router.cost(*request);
     fuzz::check_response(router.answer(*request));
   }

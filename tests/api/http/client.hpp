@@ -32,7 +32,7 @@ class Client {
     return parser.release();
   }
   http::response<http::string_body> get(const std::string& target) {
-    send("GET " + target + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
     return receive();
   }
   /// Of a body without an end, up to and with `end`.

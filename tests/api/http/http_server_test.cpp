@@ -53,7 +53,8 @@ TEST_F(HttpServerTest, ServesManyRequestsOnOneConnection) {
 TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   start();
   Client client(server_->port());
-  client.send("GET /livez HTTP/1.1\r\n\r\nGET /nothing HTTP/1.1\r\n\r\n");
+  client.send(
+      "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\nGET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(client.receive().result_int(), 200U);
   EXPECT_EQ(client.receive().result_int(), 404U);
 }
@@ -62,7 +63,7 @@ TEST_F(HttpServerTest, HeadHasLengthAndNoBody) {
   start();
   Client client(server_->port());
   const auto length = client.get("/livez").body().size();
-  client.send("HEAD /livez HTTP/1.1\r\n\r\n");
+  client.send("HEAD /livez HTTP/1.1\r\nHost: localhost\r\n\r\n");
   const auto head = client.receive(true);
   EXPECT_EQ(head[http::field::content_length], std::to_string(length));
   EXPECT_EQ(client.get("/livez").result_int(), 200U);
@@ -73,7 +74,8 @@ TEST_F(HttpServerTest, SameEtagIs304WithoutBody) {
   cell_.make_calibrated();
   Client client(server_->port());
   const auto tag = std::string(client.get("/api/v1/sensors/kinect2/pose")[http::field::etag]);
-  client.send("GET /api/v1/sensors/kinect2/pose HTTP/1.1\r\nIf-None-Match: " + tag + "\r\n\r\n");
+  client.send("GET /api/v1/sensors/kinect2/pose HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: " + tag +
+              "\r\n\r\n");
   EXPECT_EQ(client.receive().result_int(), 304U);
   EXPECT_EQ(client.get("/livez").result_int(), 200U);
 }
@@ -82,7 +84,7 @@ TEST_F(HttpServerTest, EventsComeAsTheyHappenUntilTheServerEnds) {
   start();
   events_.publish("pose/a", "pose", "{1}");
   Client client(server_->port());
-  client.send("GET /api/v1/events HTTP/1.1\r\n\r\n");
+  client.send("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_NE(client.receive_until("{1}\n\n").find("text/event-stream"), std::string::npos);
   events_.publish("pose/a", "pose", "{2}");
   EXPECT_EQ(client.receive_until("{2}\n\n"), "id: run-2\nevent: pose\ndata: {2}\n\n");
@@ -98,7 +100,7 @@ TEST_F(HttpServerTest, AListenerThatGoesAwayGivesItsPlaceBack) {
   start(settings);
   {
     Client listener(server_->port());
-    listener.send("GET /api/v1/events HTTP/1.1\r\n\r\n");
+    listener.send("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
     listener.receive_until("retry");
     EXPECT_EQ(Client(server_->port()).get("/livez").result_int(), 503U);
   }
@@ -116,8 +118,8 @@ TEST_F(HttpServerTest, WaitEndsWhenThePoseChangesOrTheTimeIsUp) {
   start();
   Client client(server_->port());
   const auto ask = [&](const std::string& tag, const std::string& wait) {
-    client.send("GET /api/v1/sensors/kinect2/pose?wait=" + wait + " HTTP/1.1\r\nIf-None-Match: " + tag +
-                "\r\n\r\n");
+    client.send("GET /api/v1/sensors/kinect2/pose?wait=" + wait +
+                " HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: " + tag + "\r\n\r\n");
   };
   const auto tag = std::string(client.get("/api/v1/sensors/kinect2/pose")[http::field::etag]);
   ask(tag, "200ms");
@@ -137,7 +139,7 @@ TEST_F(HttpServerTest, QuickAnswersDoNotWaitForSlowOnes) {
   };
   start();
   Client slow(server_->port()), quick(server_->port());
-  slow.send("POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  slow.send("POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n");
   EXPECT_EQ(quick.get("/api/v1/sensors/kinect2/pose").result_int(), 200U);
   release.set_value();
   EXPECT_EQ(slow.receive().result_int(), 200U);
@@ -145,8 +147,8 @@ TEST_F(HttpServerTest, QuickAnswersDoNotWaitForSlowOnes) {
 
 TEST_F(HttpServerTest, RubbishIsRefusedAndTheConnectionClosed) {
   start();
-  for (const auto* rubbish :
-       {"\x16\x03\x01\x02\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/1.1\r\nbad header\r\n\r\n"}) {
+  for (const auto* rubbish : {"\x16\x03\x01\x02\r\n\r\n", "GET\r\n\r\n",
+                              "GET / HTTP/1.1\r\nHost: localhost\r\nbad header\r\n\r\n"}) {
     Client client(server_->port());
     client.send(rubbish);
     EXPECT_EQ(client.receive().result_int(), 400U) << rubbish;
@@ -157,10 +159,12 @@ TEST_F(HttpServerTest, RubbishIsRefusedAndTheConnectionClosed) {
 TEST_F(HttpServerTest, TooLargeHeaderAndBodyAreRefused) {
   start();
   Client header(server_->port());
-  header.send("GET /livez HTTP/1.1\r\nX: " + std::string(9000, 'x') + "\r\n\r\n");
+  header.send("GET /livez HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(9000, 'x') + "\r\n\r\n");
   EXPECT_EQ(header.receive().result_int(), 431U);
   Client body(server_->port());
-  body.send("POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Length: 70000\r\n\r\n");
+  body.send(
+      "POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nHost: localhost\r\nContent-Length: "
+      "70000\r\n\r\n");
   EXPECT_EQ(body.receive().result_int(), 413U);
 }
 
@@ -168,7 +172,8 @@ TEST_F(HttpServerTest, ContinuesWhenAskedTo) {
   start();
   Client client(server_->port());
   client.send(
-      "POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Type: application/json\r\n"
+      "POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+      "application/json\r\n"
       "Content-Length: 2\r\nExpect: 100-continue\r\n\r\n");
   EXPECT_EQ(client.receive().result_int(), 100U);
   client.send("{}");
@@ -218,7 +223,8 @@ TEST_F(HttpServerTest, RequestUnderWayIsAnsweredBeforeTheEnd) {
   };
   start();
   Client client(server_->port());
-  client.send("POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  client.send(
+      "POST /api/v1/sensors/kinect2/captures HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n");
   entered.get_future().wait();
   auto stopped = std::async(std::launch::async, [&] { server_->stop(10s); });
   release.set_value();
@@ -250,7 +256,8 @@ TEST_F(HttpServerTest, ExceptionInARouteIsAnswered500) {
   };
   start();
   Client client(server_->port());
-  client.send("POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  client.send(
+      "POST /api/v1/sensors/kinect2/calibrations HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n");
   EXPECT_EQ(client.receive().result_int(), 500U);
   EXPECT_EQ(client.get("/livez").result_int(), 200U);
 }

@@ -46,7 +46,7 @@ class RequestIdTest : public ::testing::Test {
     server_ = *std::move(started);
   }
   http::response<http::string_body> ask(Client& client, const std::string& line, const std::string& header) {
-    client.send(line + " HTTP/1.1\r\nContent-Length: 0\r\n" + header + "\r\n");
+    client.send(line + " HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n" + header + "\r\n");
     return client.receive();
   }
 

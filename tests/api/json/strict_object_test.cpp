@@ -33,6 +33,14 @@ TEST(StrictObject, BadBodiesAreRefusedWithTheirReason) {
   EXPECT_EQ(failure(std::string(40000, '[').c_str()), ApiError::bad_json);
 }
 
+TEST(StrictObject, NoBodyIsNestedDeeperThanAnyOfOursNeeds) {
+  const auto nested = [](std::size_t depth) {  // the object is one of them
+    return R"({"method": )" + std::string(depth - 1, '[') + std::string(depth - 1, ']') + "}";
+  };
+  EXPECT_FALSE(failure(nested(16).c_str()));
+  EXPECT_EQ(failure(nested(17).c_str()), ApiError::bad_json);
+}
+
 TEST(StrictObject, KeyThatStandsTwiceIsNamed) {
   const auto read = read_body(R"({"postures": 3, "post\u0075res": 4})", kJson, {"postures", "method"});
   ASSERT_FALSE(read);

@@ -38,9 +38,12 @@ TEST(ConfigWarnings, MotionThatAnybodyOnTheNetworkCanAskForIsNamed) {
   config.motion.enabled = true;
   EXPECT_TRUE(config_warnings(config).empty());
   config.server.address = "0.0.0.0";
-  ASSERT_EQ(config_warnings(config).size(), 1U);
-  EXPECT_EQ(config_warnings(config)[0].find("motion.enabled"), 0U);
+  ASSERT_EQ(config_warnings(config).size(), 2U);
+  EXPECT_EQ(config_warnings(config)[0].find("server.allow_unauthenticated"), 0U);
+  EXPECT_EQ(config_warnings(config)[1].find("motion.enabled"), 0U);
   config.motion.enabled = false;
+  EXPECT_EQ(config_warnings(config).size(), 1U);
+  config.server.tokens_file = "/etc/calibrd/tokens.json";
   EXPECT_TRUE(config_warnings(config).empty());
 }
 
