@@ -6,7 +6,6 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -24,19 +23,6 @@ namespace http = beast::http;
 
 constexpr std::size_t kReadAtOnce = 4096;
 constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
-constexpr auto kDrainTime = std::chrono::seconds(1);
-constexpr std::size_t kMostForgotten = 4 * 1024 * 1024;
-
-template <class Body>
-http::response<Body> heading(const Response& response, const std::string& request_id, bool keep_alive) {
-  http::response<Body> message{static_cast<http::status>(response.status), 11};
-  for (const auto& [name, value] : response.headers) message.insert(name, value);
-  message.set(http::field::server, "calibrd");
-  message.set("X-Content-Type-Options", "nosniff");
-  message.set("X-Request-Id", request_id);
-  message.keep_alive(keep_alive);
-  return message;
-}
 
 bool wants_continue(const http::request<http::string_body>& message) {
   return message.version() >= 11 && beast::iequals(message[http::field::expect], "100-continue");
@@ -48,6 +34,12 @@ Response answer_marked(const Router& router, const Request& request) {
   return router.answer(request);
 }
 
+/// The answer to a header that the parser would not have, or whose path cannot be decoded.
+Response unreadable(beast::error_code failure) {
+  if (!failure) return problem(ApiError::bad_request, "the path cannot be decoded");
+  return problem(problem_of(failure).value_or(ApiError::bad_request));
+}
+
 bool may_change(const Request& request) {
   return request.method != "GET" && request.method != "HEAD" && request.method != "OPTIONS";
 }
@@ -55,15 +47,10 @@ bool may_change(const Request& request) {
 }  // namespace
 
 asio::awaitable<void> Session::run() {
-  bool goes_on = true;  // GCC 12 miscompiles co_await within a condition
+  // GCC 12 evaluates a co_await in a condition when it should not, and destroys twice what an argument of one
+  // was made from in passing: in this file both have a line, and a name, of their own.
+  bool goes_on = true;
   while (goes_on && !context_.stopping) goes_on = co_await serve_one();
-  beast::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-}
-
-asio::awaitable<void> Session::refuse() {
-  request_id_ = context_.request_ids.next();
-  co_await write(problem(ApiError::too_many_connections), false, false);
   beast::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
@@ -94,15 +81,18 @@ asio::awaitable<bool> Session::serve_one() {
   HeaderGate gate(context_.settings.header_limit);
   const auto verdict = co_await pass_header(gate);
   if (verdict != HeaderGate::Verdict::passed) context_.watch.unreadable.add();
-  if (verdict == HeaderGate::Verdict::refused) co_await end_with(problem(gate.refusal()));
+  if (verdict == HeaderGate::Verdict::refused) {
+    auto refusal = problem(gate.refusal());
+    co_await end_with(std::move(refusal));
+  }
   if (verdict != HeaderGate::Verdict::passed) co_return false;
   RequestParser parser;
   const auto failure = parse_header(gate, parser);
   auto request = failure ? std::nullopt : request_of(parser.get());
   if (!request) {
     context_.watch.unreadable.add();
-    const auto why = failure ? problem_of(failure).value_or(ApiError::bad_request) : ApiError::bad_request;
-    co_await end_with(problem(why, failure ? std::string() : "the path cannot be decoded"));
+    auto refusal = unreadable(failure);
+    co_await end_with(std::move(refusal));
     co_return false;
   }
   if (is_request_id(request->header("x-request-id"))) request_id_ = request->header("x-request-id");
@@ -143,16 +133,21 @@ asio::awaitable<bool> Session::serve(Request request, RequestParser& parser) {
   auto refusal = context_.door.refuse(request, context_.router.scope(request), peer_);
   if (refusal) {
     log(request, *refusal, begin);
-    const bool is_whole = parser.is_done();
-    if (is_whole) co_return co_await write(*std::move(refusal), request.method == "HEAD", keep_alive);
-    co_await end_with(*std::move(refusal));
-    co_return false;
+    bool goes_on = false;
+    if (parser.is_done())
+      goes_on = co_await write(*std::move(refusal), request.method == "HEAD", keep_alive);
+    else
+      co_await end_with(*std::move(refusal));
+    co_return goes_on;
   }
   if (!parser.is_done()) {
     const auto failure = co_await read_body(parser);
     if (failure) context_.watch.unreadable.add();
     const auto why = problem_of(failure);
-    if (why) co_await end_with(problem(*why));
+    if (why) {
+      auto refusal = problem(*why);
+      co_await end_with(std::move(refusal));
+    }
     if (failure) co_return false;
     request.body = std::move(parser.get().body());
   }
@@ -179,7 +174,8 @@ asio::awaitable<bool> Session::answer(const Request& request, bool keep_alive) {
   stream_.expires_never();
   auto response = co_await dispatch(request);
   if (response.worth_waiting.count() > 0) response = co_await ask_again(request, std::move(response));
-  if (context_.settings.audit && may_change(request)) co_await audit(request, response);
+  const bool is_audited = context_.settings.audit && may_change(request);
+  if (is_audited) co_await audit(request, response);
   log(request, response, begin);
   if (!response.stream) {
     const bool goes_on = co_await write(std::move(response), request.method == "HEAD", keep_alive);
@@ -211,28 +207,6 @@ asio::awaitable<void> Session::audit(const Request& request, const Response& res
   co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
 }
 
-/// Its end is that of the connection.
-asio::awaitable<void> Session::write_stream(const Request& request, Response response) {
-  const bool head = request.method == "HEAD";
-  const auto scope = context_.router.scope(request);
-  auto message = heading<http::empty_body>(response, request_id_, false);
-  stream_.expires_after(context_.settings.write_timeout);
-  beast::error_code failure;
-  co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
-  asio::steady_timer pause(stream_.get_executor());
-  while (!failure && !head && !context_.stopping && context_.door.still_admits(request, scope)) {
-    const std::string text = response.stream->next();
-    if (!text.empty()) {
-      stream_.expires_after(context_.settings.write_timeout);
-      co_await asio::async_write(stream_, asio::buffer(text),
-                                 asio::redirect_error(asio::use_awaitable, failure));
-      continue;
-    }
-    pause.expires_after(kAskAgainAfter);
-    co_await pause.async_wait(asio::use_awaitable);
-  }
-}
-
 asio::awaitable<Response> Session::dispatch(const Request& request) {
   if (context_.router.cost(request) == Cost::quick) co_return answer_marked(context_.router, request);
   auto work = [&router = context_.router, &request]() -> asio::awaitable<Response> {
@@ -252,41 +226,6 @@ asio::awaitable<Response> Session::ask_again(const Request& request, Response re
     response = co_await dispatch(request);
   }
   co_return response;
-}
-
-asio::awaitable<bool> Session::write(Response response, bool head, bool keep_alive) {
-  const bool bodiless = response.status == 204 || response.status == 304;
-  stream_.expires_after(context_.settings.write_timeout);
-  beast::error_code failure;
-  if (head || bodiless) {
-    auto message = heading<http::empty_body>(response, request_id_, keep_alive);
-    if (!bodiless) message.content_length(response.body.size());
-    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
-  } else {
-    auto message = heading<http::string_body>(response, request_id_, keep_alive);
-    message.body() = std::move(response.body);
-    message.prepare_payload();
-    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
-  }
-  co_return keep_alive && !failure;
-}
-
-/// Answers and ends the connection. Closed with bytes unread it would be reset, and the answer be lost with
-/// it; so what still comes is read and forgotten, for a moment.
-asio::awaitable<void> Session::end_with(Response response) {
-  co_await write(std::move(response), false, false);
-  beast::error_code failure;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, failure);
-  idle_ = true;
-  stream_.expires_after(kDrainTime);
-  std::size_t forgotten = 0;
-  while (!failure && forgotten < kMostForgotten && !context_.stopping) {
-    buffer_.clear();
-    const auto space = buffer_.prepare(kReadAtOnce);
-    const auto size =
-        co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
-    forgotten += size;
-  }
 }
 
 }  // namespace calibrd::api

@@ -100,7 +100,9 @@ bool AuditLog::rotate() {
 
 std::filesystem::path AuditLog::older(int number) const {
   auto file = settings_.file;
-  return file.replace_extension("." + std::to_string(number) + settings_.file.extension().string());
+  const auto ending =
+      std::string(".").append(std::to_string(number)).append(settings_.file.extension().string());
+  return file.replace_extension(ending);
 }
 
 }  // namespace calibrd

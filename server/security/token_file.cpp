@@ -15,7 +15,7 @@
 #include <cerrno>
 #include <chrono>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "core/base/utc_text.hpp"
 #include "server/security/security_error.hpp"
@@ -134,10 +134,9 @@ Result<std::vector<TokenEntry>> read_tokens(const fs::path& file) {
   if ((seen.st_mode & 077U) != 0) return Error{SecurityError::tokens_open_to_others, file.string()};
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::stringstream content;
-  content << stream.rdbuf();
-  if (!stream || !content) return file_fault(SecurityError::tokens_unreadable, file);
-  return parse_tokens(content.str(), file);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad()) return file_fault(SecurityError::tokens_unreadable, file);
+  return parse_tokens(content, file);
 }
 
 Result<std::string> create_token(const fs::path& file, const std::string& name, api::Scope scope) {

@@ -75,7 +75,7 @@ FRAMING = [body(*parts) for parts in (
     (b"Transfer-Encoding: \x0bchunked\r\n",), (b"Transfer-Encoding: xchunked\r\n",), (b"Transfer-Encoding:\r\n",),
     (b"Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n",), (b"Transfer-Encoding : chunked\r\n",),
     (b"Transfer-Encoding: chunked\r\n", b"c4n4ry\r\n"), (b"Transfer-Encoding: chunked\r\n", b"-1\r\n{}\r\n0\r\n\r\n"),
-    (b"Transfer-Encoding: chunked\r\n", b"2\n{}\n0\n\n"), (b"Transfer-Encoding: chunked\r\n", b"2\r\n{}x0\r\n\r\n"),
+    (b"Transfer-Encoding: chunked\r\n", b"2\r\n{}x0\r\n\r\n"),
     (b"Transfer-Encoding: chunked\r\n", b"fffffffffffffffff\r\n{}"), (b"Transfer-Encoding: chunked\r\n", b"11170\r\n" + b"a" * 70000),
     (b"Transfer-Encoding: chunked\r\n", b"2;" + b"c4n4ry" * 30000 + b"\r\n{}\r\n0\r\n\r\n"))]
 
@@ -137,7 +137,7 @@ class MalformedHttp(CellTest):
         for request in FRAMING + TARGETS[:5]:
             with self.subTest(request=request[:120]):
                 answer, _ = exchange(daemon.port, request + follower)
-                self.assertEqual(answer.count(b"HTTP/1.1 "), 1, answer)
+                self.assertEqual(len(re.findall(rb"HTTP/1\.1 \d\d\d ", answer)), 1, answer)
 
     def test_requests_cut_off_anywhere_leave_no_trace(self):
         daemon = self.start()
@@ -149,7 +149,8 @@ class MalformedHttp(CellTest):
 
     def test_a_header_and_a_body_that_trickle_in_have_a_deadline_in_all(self):
         daemon = self.start()
-        for start in (b"GET /livez HTTP/1.1\r\n", body(b"Content-Length: 100\r\n")):
+        lines_without_return = body(b"Transfer-Encoding: chunked\r\n", b"2\n{}\n0\n\n")  # the end of the first is waited for
+        for start in (b"GET /livez HTTP/1.1\r\n", body(b"Content-Length: 100\r\n"), lines_without_return):
             with self.subTest(start=start), contextlib.closing(
                     socket.create_connection(("127.0.0.1", daemon.port), timeout=0.5)) as connection:
                 begin = time.monotonic()

@@ -27,7 +27,9 @@ Verdict verdict_on(std::string_view bytes) {
   HeaderGate whole(kLimit), bit_by_bit(kLimit);
   const auto verdict = look(whole, bytes, bytes.size());
   EXPECT_EQ(look(bit_by_bit, bytes, 1), verdict) << "pieces make a difference: " << bytes;
-  if (verdict == Verdict::passed) EXPECT_EQ(whole.size(), bit_by_bit.size());
+  if (verdict == Verdict::passed) {
+    EXPECT_EQ(whole.size(), bit_by_bit.size());
+  }
   return verdict;
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "api/http/http_server.hpp"
 #include "api/routes/routes.hpp"
 #include "core/base/log_scope.hpp"
@@ -93,6 +95,9 @@ TEST_F(RequestIdTest, TheServerShowsItsConnectionsAndThatItGoesOn) {
     ask(client, "GET /livez", "");
     EXPECT_EQ(watch_.connections.value(), 1);
   }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (watch_.connections.value() > 0 && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();  // that the client has gone takes a moment to be heard
   server_.reset();
   EXPECT_EQ(watch_.accepted.value(), 1U);
   EXPECT_EQ(watch_.connections.value(), 0);
