@@ -14,8 +14,8 @@ using namespace std::chrono_literals;
 Router two_routes() {
   Router router;
   const auto answer = [](const Request&, const PathValues&) { return Response(); };
-  router.add("GET", "/api/v1/sensors/{id}/pose", Cost::quick, answer);
-  router.add("GET", "/livez", Cost::quick, answer);
+  router.add("GET", "/api/v1/sensors/{id}/pose", Scope::read, Cost::quick, answer);
+  router.add("GET", "/livez", Scope::read, Cost::quick, answer);
   return router;
 }
 
