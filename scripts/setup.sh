@@ -17,7 +17,7 @@ readonly kLibraries=(
   liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
-  libgtest-dev liborocos-kdl-dev)                                                         # tests
+  libgtest-dev liborocos-kdl-dev python3-jsonschema)                                                         # tests
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
 readonly kBoostPrefix=.deps/boost
 readonly kPclPrefix=.deps/pcl

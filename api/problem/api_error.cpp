@@ -41,6 +41,7 @@ constexpr std::array kTable{
     Row{ApiError::calibration_not_running, {409, "calibration_not_running", "This calibration has ended; it cannot be cancelled.", "Read its result with GET."}},
     Row{ApiError::calibration_not_finished, {409, "calibration_not_finished", "This calibration has not ended yet.", "Wait until its status is succeeded."}},
     Row{ApiError::not_activatable, {409, "not_activatable", "Only an accepted calibration can become the current pose.", "Choose one with verdict accepted."}},
+    Row{ApiError::not_comparable, {409, "not_comparable", "These calibrations cannot be compared.", "Choose two calibrations of one sensor whose results have a pose: accepted or uncertain ones."}},
     Row{ApiError::guess_needed, {409, "guess_needed", "One posture is not enough to find the sensor from nothing.", "Ask for at least two postures, or give a guess."}},
     Row{ApiError::paper_needs_guess, {409, "paper_needs_guess", "The method \"paper\" cannot start from nothing.", "Give a guess (more postures do not help), configure one for the sensor, or use the method \"full\"."}},
     Row{ApiError::capture_in_progress, {409, "capture_in_progress", "A capture of this sensor is under way.", "Wait for it to end."}},

@@ -37,6 +37,7 @@ enum class ApiError {
   calibration_not_running,
   calibration_not_finished,
   not_activatable,
+  not_comparable,
   guess_needed,
   paper_needs_guess,
   capture_in_progress,

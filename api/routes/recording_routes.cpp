@@ -4,7 +4,7 @@
 #include <boost/json/object.hpp>
 
 #include "api/json/strict_object.hpp"
-#include "api/ply/ply.hpp"
+#include "api/routes/cloud_response.hpp"
 #include "api/routes/header_numbers.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
@@ -35,42 +35,35 @@ Response answer_capture(const Request& request, const PathValues& values, CellSe
   return wanted ? archive_response(service.record_capture(*wanted)) : problem(wanted.error());
 }
 
-/// What a cloud was made from, as name and value: comments of the file, and headers.
+/// What a cloud was made from, as name and value.
 std::vector<std::pair<std::string, std::string>> provenance(const Cloud& cloud) {
-  std::vector<std::pair<std::string, std::string>> lines{{"Frame", cloud.frame}};
-  if (cloud.joint_stamp_ns) lines.emplace_back("Joint-Stamp-Ns", std::to_string(*cloud.joint_stamp_ns));
+  std::vector<std::pair<std::string, std::string>> lines{{"Calibrd-Frame", cloud.frame}};
+  if (cloud.joint_stamp_ns)
+    lines.emplace_back("Calibrd-Joint-Stamp-Ns", std::to_string(*cloud.joint_stamp_ns));
   if (!cloud.joint_positions_rad.empty())
-    lines.emplace_back("Joint-Positions", numbers_text(cloud.joint_positions_rad));
-  if (cloud.frame_stamp_ns) lines.emplace_back("Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
+    lines.emplace_back("Calibrd-Joint-Positions", numbers_text(cloud.joint_positions_rad));
+  if (cloud.frame_stamp_ns)
+    lines.emplace_back("Calibrd-Frame-Stamp-Ns", std::to_string(*cloud.frame_stamp_ns));
   if (cloud.T_base_sensor) {
-    lines.emplace_back("T-Base-Sensor", pose_text(*cloud.T_base_sensor));
-    lines.emplace_back("Pose-Valid", cloud.pose_valid ? "true" : "false");
+    lines.emplace_back("Calibrd-T-Base-Sensor", pose_text(*cloud.T_base_sensor));
+    lines.emplace_back("Calibrd-Pose-Valid", cloud.pose_valid ? "true" : "false");
   }
   return lines;
 }
 
-Response cloud_response(const Cloud& cloud) {
-  Response response{200, {{"Content-Type", "application/x-ply"}, {"Cache-Control", "no-store"}}, {}};
-  std::vector<std::string> comments;
-  for (const auto& [name, value] : provenance(cloud)) {
-    auto labelled = std::string("Calibrd-").append(name);
-    comments.push_back(labelled + " " + value);
-    response.headers.emplace_back(std::move(labelled), value);
-  }
-  response.body = write_ply(cloud.points, cloud.residual_m, comments);
-  return response;
-}
-
 Response answer_cloud(CloudKind kind, const Request& request, const PathValues& values,
                       CellService& service) {
-  if (auto unknown = unknown_query(request, {"frame"})) return problem(*unknown);
+  if (auto unknown = unknown_query(request, {"frame", "format"})) return problem(*unknown);
   const auto frame = request.query.find("frame");
   const bool in_base = frame != request.query.end() && frame->second == "base";
   if (frame != request.query.end() && !in_base && frame->second != "sensor")
     return problem(ApiError::bad_query,
                    "frame: \"" + frame->second + "\" is neither \"sensor\" nor \"base\"");
+  const auto format = read_cloud_format(request);
+  if (!format) return problem(format.error());
   const auto cloud = service.cloud({values[0], kind, in_base});
-  return cloud ? cloud_response(*cloud) : problem(cloud.error());
+  if (!cloud) return problem(cloud.error());
+  return cloud_response(*format, {cloud->points, cloud->residual_m, {}}, provenance(*cloud));
 }
 
 }  // namespace

@@ -13,12 +13,14 @@ Router make_routes(CellService& service, const EventHub& events, const Operation
   add_drift_routes(router, service);
   add_robot_routes(router, service);
   add_calibration_routes(router, service);
+  add_diff_routes(router, service);
   add_next_posture_routes(router, service);
   add_recording_routes(router, service);
   add_motion_routes(router, service);
   add_several_sensors_routes(router, service);
   add_obstacle_routes(router, service);
   add_event_routes(router, events);
+  add_openapi_routes(router);
   return router;
 }
 

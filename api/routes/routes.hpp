@@ -16,6 +16,7 @@ Router make_routes(CellService& service, const EventHub& events, const Operation
 void add_pose_routes(Router& router, CellService& service);
 void add_sensor_routes(Router& router, CellService& service);
 void add_drift_routes(Router& router, CellService& service);
+void add_diff_routes(Router& router, CellService& service);
 void add_robot_routes(Router& router, CellService& service);
 void add_calibration_routes(Router& router, CellService& service);
 void add_several_sensors_routes(Router& router, CellService& service);
@@ -24,6 +25,7 @@ void add_next_posture_routes(Router& router, CellService& service);
 void add_motion_routes(Router& router, CellService& service);
 void add_recording_routes(Router& router, CellService& service);
 void add_health_routes(Router& router, CellService& service, const OperationsService& operations);
+void add_openapi_routes(Router& router);
 void add_operations_routes(Router& router, const OperationsService& operations);
 void add_event_routes(Router& router, const EventHub& events);
 

@@ -4,7 +4,7 @@
 #include <boost/json/object.hpp>
 #include <cmath>
 
-#include "api/ply/ply.hpp"
+#include "api/routes/cloud_response.hpp"
 #include "api/routes/header_numbers.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 namespace json = boost::json;
 
-/// What the cloud was made from, as name and value: comments of the file, and headers.
+/// What the cloud was made from, as name and value.
 std::vector<std::pair<std::string, std::string>> provenance(const MergedCloud& cloud) {
   std::vector<std::pair<std::string, std::string>> lines{{"Calibrd-Frame", cloud.base_frame},
                                                          {"Calibrd-Depth", "corrected"}};
@@ -37,27 +37,19 @@ std::vector<std::pair<std::string, std::string>> provenance(const MergedCloud& c
   return lines;
 }
 
-Response cloud_response(const MergedCloud& cloud) {
-  Response response{200, {{"Content-Type", "application/x-ply"}, {"Cache-Control", "no-store"}}, {}};
-  std::vector<std::string> comments;
-  for (auto& line : provenance(cloud)) {
-    comments.push_back(line.first + " " + line.second);
-    response.headers.push_back(std::move(line));
-  }
-  std::vector<std::size_t> points_of_sensor;
-  for (const auto& part : cloud.parts) points_of_sensor.push_back(part.points);
-  response.body = write_merged_ply(cloud.points, points_of_sensor, comments);
-  return response;
-}
-
 Response answer_merged_cloud(const Request& request, CellService& service) {
-  if (auto unknown = unknown_query(request, {"robot"})) return problem(*unknown);
+  if (auto unknown = unknown_query(request, {"robot", "format"})) return problem(*unknown);
   const auto robot = request.query.find("robot");
   const bool with_robot = robot == request.query.end() || robot->second == "true";
   if (!with_robot && robot->second != "false")
     return problem(ApiError::bad_query, "robot: \"" + robot->second + "\" is neither \"true\" nor \"false\"");
+  const auto format = read_cloud_format(request);
+  if (!format) return problem(format.error());
   const auto cloud = service.merged_cloud({with_robot});
-  return cloud ? cloud_response(*cloud) : problem(cloud.error());
+  if (!cloud) return problem(cloud.error());
+  std::vector<std::size_t> points_of_sensor;
+  for (const auto& part : cloud->parts) points_of_sensor.push_back(part.points);
+  return cloud_response(*format, {cloud->points, {}, points_of_sensor}, provenance(*cloud));
 }
 
 json::object pair_json(const SensorPair& pair) {

@@ -38,6 +38,9 @@ class CellService {
   virtual Result<CalibrationReport> activate_calibration(std::string_view id) = 0;
   virtual Result<HistoryPage> history(const HistoryQuery& query) const = 0;
 
+  /// The configured points where the sensor's pose must be good. Quick.
+  virtual Result<std::vector<WorkspacePoint>> workspace(std::string_view sensor_id) const = 0;
+
   /// The views of a calibration, as a capture/1 folder in a tar archive, while they are kept.
   virtual Result<CaptureArchive> calibration_capture(std::string_view id) const = 0;
 

@@ -100,8 +100,12 @@ struct Daemon::Parts {
   std::unique_ptr<ServiceWatch> service_watch;
 
   void make_operations(const Config& config, const std::string& version, const std::string& configuration) {
-    OperationsFacts facts{
-        version, configuration, config.storage.path, capture_folder_of(config.storage.path), {}, {}};
+    OperationsFacts facts{version,
+                          configuration,
+                          config.storage.path,
+                          capture_folder_of(config.storage.path),
+                          audit_settings(config).file,
+                          {}};
     for (const auto& [id, sensor] : config.sensors) facts.sensor_ids.push_back(id);
     operations = std::make_unique<Operations>(std::move(facts));
   }

@@ -103,6 +103,7 @@ class LiveCell : public api::CellService {
   Result<api::CalibrationReport> cancel_calibration(std::string_view id) override;
   Result<api::CalibrationReport> activate_calibration(std::string_view id) override;
   Result<api::HistoryPage> history(const api::HistoryQuery& query) const override;
+  Result<std::vector<WorkspacePoint>> workspace(std::string_view sensor_id) const override;
   Result<PostureSuggestion> next_posture(const api::NextPostureRequest& request) const override;
   Result<api::CaptureArchive> calibration_capture(std::string_view id) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;

@@ -26,6 +26,12 @@ Result<api::HistoryPage> LiveCell::history(const api::HistoryQuery& query) const
   return page;
 }
 
+Result<std::vector<WorkspacePoint>> LiveCell::workspace(std::string_view sensor_id) const {
+  const auto entry = find(sensor_id);
+  if (!entry) return entry.error();
+  return (*entry)->sensor->workspace();
+}
+
 Result<PostureSuggestion> LiveCell::next_posture(const api::NextPostureRequest& request) const {
   const auto entry = find(request.sensor_id);
   if (!entry) return entry.error();

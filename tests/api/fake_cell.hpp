@@ -22,6 +22,8 @@ class FakeCell : public CellService {
   std::function<Result<CalibrationReport>(const CalibrationRequest&)> on_start;
   std::function<Result<CaptureArchive>(const CaptureRequest&)> on_capture;
   CalibrationReport calibration_report;
+  CalibrationReport other_calibration;  ///< where it has an id
+  std::vector<WorkspacePoint> points;
   mutable HistoryQuery last_history;
   PostureSuggestion suggestion;
   mutable NextPostureRequest last_next_posture;
@@ -97,6 +99,9 @@ class FakeCell : public CellService {
     if (capture_of_calibration.empty()) return fail(ApiError::capture_not_kept, std::string(id));
     return CaptureArchive{std::string(id) + ".tar", capture_of_calibration};
   }
+  Result<std::vector<WorkspacePoint>> workspace(std::string_view id) const override {
+    return of_sensor(id, points);
+  }
   Result<HistoryPage> history(const HistoryQuery& query) const override {
     last_history = query;
     return of_sensor(query.sensor_id, HistoryPage{{calibration_report}, true});
@@ -150,6 +155,7 @@ class FakeCell : public CellService {
     return motion_report;
   }
   Result<CalibrationReport> of_calibration(std::string_view id) const {
+    if (!other_calibration.id.empty() && id == other_calibration.id) return other_calibration;
     if (id != "c1") return fail(ApiError::no_such_calibration, std::string(id));
     return calibration_report;
   }

@@ -27,6 +27,7 @@ class RouteTest : public ::testing::Test {
     return ask("GET", target, {}, std::move(headers));
   }
 
+  const Router& router() const { return router_; }
   boost::json::object body() const { return boost::json::parse(last_.body).as_object(); }
   std::string code() const { return std::string(body().at("code").as_string()); }
   std::string detail() const { return std::string(body().at("detail").as_string()); }

@@ -1,0 +1,18 @@
+# Writes files as C++ strings: cmake -D OUT=FILE -D NAMES=a.json,b.js -D FOLDER=DIR -P embed.cmake
+# Raw strings in pieces: a compiler need not take more than 65536 bytes in one.
+string(REPLACE "," ";" names "${NAMES}")
+set(text "// Made by cmake/embed.cmake.\n#include \"api/openapi/embedded.hpp\"\n\n#include <string>\n\nnamespace calibrd::api {\n")
+foreach(name IN LISTS names)
+  file(READ "${FOLDER}/${name}" content)
+  string(MAKE_C_IDENTIFIER "${name}" identifier)
+  string(LENGTH "${content}" length)
+  string(APPEND text "\nstd::string_view embedded_${identifier}() {\n  static const std::string text = std::string()")
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${content}" ${at} 15000 piece)
+    string(APPEND text "\n      + R\"piece(${piece})piece\"")
+    math(EXPR at "${at} + 15000")
+  endwhile()
+  string(APPEND text ";\n  return text;\n}\n")
+endforeach()
+file(WRITE "${OUT}" "${text}\n}  // namespace calibrd::api\n")
