@@ -18,7 +18,7 @@ constexpr std::array kTable{
     MetricFamily{"calibrd_uptime_seconds", gauge, "", "Since the cell was taken up."},
     MetricFamily{"calibrd_thread_heartbeat_age_seconds", gauge, "thread", "Since a thread that must go on went on; above 10 the watchdog is no longer fed."},
 
-    MetricFamily{"calibrd_http_requests_total", counter, "route, method, status", "Requests answered; route is the template of the path, \"unmatched\" where there is none (its method is then \"any\")."},
+    MetricFamily{"calibrd_http_requests_total", counter, "route, method, status", "Requests answered; route is the template of the path, \"unmatched\" where there is none or the client was not let in (its method is then \"any\")."},
     MetricFamily{"calibrd_http_request_duration_seconds", histogram, "route, method", "From the end of a request to its answer, the time asked for with ?wait= included."},
     MetricFamily{"calibrd_http_connections", gauge, "", "Connections being served."},
     MetricFamily{"calibrd_http_connections_accepted_total", counter, "", "Connections that were served."},
