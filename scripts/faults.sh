@@ -2,12 +2,16 @@
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# What the store of calibrations survives.
+# What the daemon survives.
 #   scripts/faults.sh kills [N] [SEED]  kills the daemon N times (200) at random moments of its calibrations in the simulated
 #                                       cell, restarts it and checks what is stored
 #   scripts/faults.sh storage           power cuts, failing system calls and allocations, each in turn; full, read-only and
 #                                       damaged disks
-# They are built first. docs/storage.md says what is promised.
+#   scripts/faults.sh disconnects [N [SEED [controller | sensor]]]
+#                                       cuts it off from controller and sensor, N times each (1000, half an hour), and measures how
+#                                       soon it has them again and what stays behind
+#   scripts/faults.sh clock             the wall clock leaps by ten years and back; the daemon is stopped for ten seconds
+# They are built first. docs/storage.md says what is promised of the store, docs/figures.md what was measured.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -19,6 +23,14 @@ case $what in
   kills)
     build all
     python3 -B tests/e2e/kills.py "$@"
+    ;;
+  disconnects)
+    build all
+    python3 -B tests/e2e/disconnects.py "$@"
+    ;;
+  clock)
+    build all
+    python3 -B tests/e2e/clock_test.py "$@"
     ;;
   storage)
     build all

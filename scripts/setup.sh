@@ -8,6 +8,7 @@
 #   scripts/setup.sh --check   only say what is missing; exit status 1 if something is
 #   scripts/setup.sh --list    print the packages
 #   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 300 MB); scripts/fuzz.sh does so
+#   scripts/setup.sh --load    install what scripts/load.sh throughput compares with as well (wrk, nginx)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -17,8 +18,9 @@ readonly kLibraries=(
   liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
-  libgtest-dev liborocos-kdl-dev python3-jsonschema)                                                         # tests
+  libgtest-dev liborocos-kdl-dev python3-jsonschema libfaketime)                          # tests
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
+readonly kLoad=(wrk nginx-light)
 readonly kBoostPrefix=.deps/boost
 readonly kPclPrefix=.deps/pcl
 
@@ -108,7 +110,10 @@ refuse() {
 main() {
   local os missing extra=()
   os=$(distribution)
-  if [ "${1:-}" = --fuzz ]; then extra=("${kFuzzing[@]}") && shift; fi
+  case ${1:-} in
+    --fuzz) extra=("${kFuzzing[@]}") && shift ;;
+    --load) extra=("${kLoad[@]}") && shift ;;
+  esac
   [ "${1:-}" != --list ] || { packages; return; }
   case "$os" in
     debian:12 | debian:13 | ubuntu:24.04) ;;
@@ -121,7 +126,7 @@ main() {
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
-  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz"
+  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz, --load"
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi

@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <boost/json/object.hpp>
 #include <boost/json/serialize.hpp>
 #include <charconv>
 #include <functional>
-#include <sstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
 
+#include "api/json/json_text.hpp"
 #include "api/json/pose_json.hpp"
 #include "api/pose_formats/pose_format.hpp"
 #include "api/routes/names.hpp"
@@ -20,11 +25,9 @@ namespace json = boost::json;
 constexpr double kLongestWait_ms = 60'000;
 
 std::string seconds_text(Seconds age) {
-  std::ostringstream text;
-  text.setf(std::ios::fixed);
-  text.precision(3);
-  text << age.count();
-  return text.str();
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.begin(), text.end(), age.count(), std::chars_format::fixed, 3).ptr;
+  return {text.begin(), end};
 }
 
 /// After a restart the same calibration may be given in another controller frame.
@@ -48,10 +51,7 @@ bool etag_matches(const std::string& if_none_match, const std::string& tag) {
 }
 
 void add_age_headers(Response& response, const PoseReport& pose) {
-  if (pose.known) {
-    const auto age = std::chrono::system_clock::now() - pose.known->calibrated_at;
-    response.headers.emplace_back("Calibrd-Calibrated-Age-S", seconds_text(age));
-  }
+  if (pose.known) response.headers.emplace_back("Calibrd-Calibrated-Age-S", seconds_text(pose.age));
   if (pose.last_check)
     response.headers.emplace_back("Calibrd-Last-Check-Age-S", seconds_text(pose.last_check->age));
   if (pose.passed_check_age)
@@ -117,9 +117,49 @@ json::object format_body(const PoseReport& pose, const PoseFormat& format, const
   return body;
 }
 
+/// The body of each sensor's pose as it was written last: a pose that is polled changes a few times a minute,
+/// but for its ages, and those are no part of it. Safe to call from any thread.
+class PoseBodies {
+ public:
+  std::string text(const PoseReport& pose) {
+    const std::lock_guard lock(mutex_);
+    auto& last = last_[pose.sensor_id];
+    if (!last || !tell_the_same(last->pose, pose)) last = Written{pose, json_text(full_body(pose))};
+    return last->text;
+  }
+
+ private:
+  struct Written {
+    PoseReport pose;
+    std::string text;
+  };
+  static auto told(const PoseReport& pose) {
+    return std::tie(pose.valid, pose.state, pose.reason, pose.candidate, pose.job, pose.base_frame,
+                    pose.sensor_frame, pose.max_unverified);
+  }
+  static auto told(const CheckReport& check) {
+    return std::tie(check.agrees, check.agreement, check.median_residual_m);
+  }
+  static bool tell_the_same(const PoseReport& a, const PoseReport& b) {
+    if (told(a) != told(b) || a.known.has_value() != b.known.has_value()) return false;
+    if (a.last_check.has_value() != b.last_check.has_value()) return false;
+    if (a.last_check && told(*a.last_check) != told(*b.last_check)) return false;
+    return !a.known || tell_the_same(*a.known, *b.known);
+  }
+  static bool tell_the_same(const PoseReport::Known& a, const PoseReport::Known& b) {
+    return a.calibration_id == b.calibration_id && a.calibrated_at == b.calibrated_at &&
+           a.result.T_base_sensor->matrix() == b.result.T_base_sensor->matrix() &&
+           a.result.sigma_position_m == b.result.sigma_position_m &&
+           a.result.sigma_rotation_rad == b.result.sigma_rotation_rad;
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, std::optional<Written>> last_;
+};
+
 /// Error: no_controller_frame.
-Result<Response> first_response(const PoseReport& pose, const PoseFormat* format) {
-  if (!format) return json_response(200, full_body(pose));
+Result<Response> first_response(const PoseReport& pose, const PoseFormat* format, PoseBodies& bodies) {
+  if (!format) return json_response(200, bodies.text(pose));
   if (!pose.valid || !pose.known) return not_valid(pose);
   const auto given = refer({*pose.known->result.T_base_sensor, pose.base_frame, pose.sensor_frame},
                            format->reference, pose.controller_frame);
@@ -144,8 +184,8 @@ Result<std::chrono::milliseconds> read_wait(const Request& request) {
 }
 
 Response respond(const Request& request, const PoseReport& pose, const PoseFormat* format,
-                 std::chrono::milliseconds wait) {
-  auto first = first_response(pose, format);
+                 std::chrono::milliseconds wait, PoseBodies& bodies) {
+  auto first = first_response(pose, format, bodies);
   if (!first) return problem(first.error());  // however long one waits
   auto response = *std::move(first);
   const auto tag = etag(pose, format);
@@ -157,7 +197,8 @@ Response respond(const Request& request, const PoseReport& pose, const PoseForma
   return response;
 }
 
-Response answer_pose(const Request& request, const PathValues& values, CellService& service) {
+Response answer_pose(const Request& request, const PathValues& values, CellService& service,
+                     PoseBodies& bodies) {
   if (auto unknown = unknown_query(request, {"format", "wait"})) return problem(*unknown);
   const auto asked = request.query.find("format");
   const auto* format = asked == request.query.end() ? nullptr : find_pose_format(asked->second);
@@ -166,16 +207,17 @@ Response answer_pose(const Request& request, const PathValues& values, CellServi
   const auto wait = read_wait(request);
   if (!wait) return problem(wait.error());
   const auto pose = service.pose(values[0]);
-  return pose ? respond(request, *pose, format, *wait) : problem(pose.error());
+  return pose ? respond(request, *pose, format, *wait, bodies) : problem(pose.error());
 }
 
 }  // namespace
 
 void add_pose_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/sensors/{id}/pose", Scope::read, Cost::quick,
-             [&service](const Request& request, const PathValues& values) {
-               return answer_pose(request, values, service);
-             });
+  router.add(
+      "GET", "/api/v1/sensors/{id}/pose", Scope::read, Cost::quick,
+      [&service, bodies = std::make_shared<PoseBodies>()](const Request& request, const PathValues& values) {
+        return answer_pose(request, values, service, *bodies);
+      });
 }
 
 }  // namespace calibrd::api

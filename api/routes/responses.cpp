@@ -12,8 +12,10 @@ namespace calibrd::api {
 
 namespace json = boost::json;
 
-Response json_response(int status, const json::value& body) {
-  return {status, {{"Content-Type", "application/json"}, {"Cache-Control", "no-cache"}}, json_text(body)};
+Response json_response(int status, const json::value& body) { return json_response(status, json_text(body)); }
+
+Response json_response(int status, std::string text) {
+  return {status, {{"Content-Type", "application/json"}, {"Cache-Control", "no-cache"}}, std::move(text)};
 }
 
 Response problem(const Error& error) {

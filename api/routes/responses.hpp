@@ -16,6 +16,8 @@ namespace calibrd::api {
 Response archive_response(Result<CaptureArchive> archive);
 
 Response json_response(int status, const boost::json::value& body);
+/// `text`: the body as it is to be sent.
+Response json_response(int status, std::string text);
 
 /// RFC 9457 problem+json with `code` and `remedy`. Errors that are not ApiError become status 500, code
 /// "internal", with their message as the detail.

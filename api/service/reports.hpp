@@ -49,6 +49,7 @@ struct PoseReport {
   std::string job;        ///< id of a calibration under way; empty: none
   std::string candidate;  ///< id of one that was made after a move and waits to be activated; empty: none
   std::optional<Known> known;
+  Seconds age{0};  ///< of `known`, since calibrated_at; does not follow a wall clock that is set meanwhile
   std::optional<CheckReport> last_check;    ///< agreeing or not
   std::optional<Seconds> passed_check_age;  ///< since the last check that agreed
   Seconds max_unverified{0};

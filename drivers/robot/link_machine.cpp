@@ -77,6 +77,7 @@ LinkSteps LinkMachine::on_tick(Clock::time_point now) {
     connect(now);
   } else if (phase_ == Phase::connecting && now >= wake_at_) {
     lose(State::connecting, {RobotLinkError::no_answer, {}}, now);
+    wake_at_ = now + settings_.backoff_first;  // the attempt itself was pause enough
   } else if (phase_ == Phase::connected && late) {
     lose(State::connecting, {RobotLinkError::held_up, {}}, now);
   } else if (phase_ == Phase::connected && now - alive_at_ >= settings_.reconnect_after) {

@@ -20,7 +20,7 @@ struct LinkSettings {
 
   Interval stale_after{250};       ///< a kind of message is stale when none came for so long
   Interval reconnect_after{2000};  ///< without any message; what lasted so long counts as settled
-  Interval connect_timeout{2000};  ///< name look-up included
+  Interval connect_timeout{900};   ///< name look-up included; a peer that comes back is found within a second
   Interval backoff_first{50};      ///< pause before a new attempt; doubles until a connection has settled
   Interval backoff_cap{500};
   /// A controller that closes a connection so soon after accepting it has given its slot to another client.

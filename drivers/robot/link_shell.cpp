@@ -70,8 +70,9 @@ void LinkShell::carry_out(link_step::Connect) {
   const auto guard = [this](auto handler) { return for_this_connection(std::move(handler)); };
   dial(lookup_, socket_, guard, [this](const std::error_code& failed) {
     if (failed) return obey(machine_.on_connect_failed(failed, Clock::now()));
+    drained_at_ = Clock::now();
     wait_for_bytes();
-    obey(machine_.on_connected(Clock::now()));
+    obey(machine_.on_connected(drained_at_));
   });
 }
 
@@ -107,14 +108,19 @@ void LinkShell::read_what_is_there() {
 bool LinkShell::read_once() {
   const StampedRead read = read_stamped(socket_, inbox_);
   const Clock::time_point now = Clock::now();
-  if (read.error == std::errc::operation_would_block) return false;
+  if (read.error == std::errc::operation_would_block) {
+    drained_at_ = now;
+    return false;
+  }
   if (read.error || read.size == 0) {
     obey(machine_.on_closed(read.error, now));
     return false;
   }
-  last_stamp_ = std::clamp(read.stamp, std::min(last_stamp_, now), now);
+  // The kernel's stamp is of the wall clock; when that is set, the order of things still holds.
+  last_stamp_ = std::clamp(read.stamp, std::min(std::max(last_stamp_, drained_at_), now), now);
   ErrorCode failed;
   const bool more = socket_.available(failed) > 0 && !failed;
+  if (!more) drained_at_ = now;
   obey(machine_.on_received({std::span(inbox_).first(read.size), last_stamp_, more}, now));
   return more;
 }

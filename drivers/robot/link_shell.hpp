@@ -63,6 +63,7 @@ class LinkShell : public std::enable_shared_from_this<LinkShell> {
   std::uint64_t connection_ = 0;  // counts attempts and closes: completions of an earlier one are ignored
   std::uint64_t timer_round_ = 0;
   Clock::time_point last_stamp_{};
+  Clock::time_point drained_at_{};  // then nothing was waiting to be read: what came since came later
   std::array<std::byte, std::size_t{16} * 1024> inbox_{};
   std::vector<std::byte> outbox_;
   std::shared_ptr<std::vector<std::byte>> leaving_;

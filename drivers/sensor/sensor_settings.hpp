@@ -21,8 +21,8 @@ struct SensorTimeouts {
   std::chrono::milliseconds end{400};
   /// Wait before the first restart; doubles up to restart_max, and is forgotten after `stable` of good
   /// frames.
-  std::chrono::milliseconds restart_min{500};
-  std::chrono::milliseconds restart_max{5000};
+  std::chrono::milliseconds restart_min{100};
+  std::chrono::milliseconds restart_max{300};  ///< a sensor that is plugged in streams within a second
   std::chrono::milliseconds stable{10000};
 };
 

@@ -39,7 +39,7 @@ struct JointConfig {
 struct LinkConfig {
   Duration stale_after{250};
   Duration reconnect_after{2000};
-  Duration connect_timeout{2000};
+  Duration connect_timeout{900};
   Duration backoff_first{50};
   Duration backoff_cap{500};
   Duration eviction_within{10'000};

@@ -9,6 +9,7 @@
 #include "core/robot/controller_frame.hpp"
 #include "drivers/sensor/sensor_process.hpp"
 #include "server/daemon/conversions.hpp"
+#include "server/daemon/descriptor_limit.hpp"
 #include "server/daemon/event_log.hpp"
 #include "server/daemon/feed_thread.hpp"
 #include "server/daemon/motion_link.hpp"
@@ -66,6 +67,15 @@ Status check_tokens(const ServerConfig& server) {
 AuditSettings audit_settings(const Config& config) {
   return {config.storage.path.parent_path() / "audit.jsonl",
           static_cast<std::uint64_t>(config.audit.max_file_mb) * 1'000'000, config.audit.files};
+}
+
+/// As many as were asked for, or as many as the system allows.
+int room_for(int connections) {
+  const int room = make_room_for_connections(connections);
+  if (room < connections)
+    spdlog::warn("server.max_connections: the limit of open files (ulimit -Hn) is enough for {} of {}", room,
+                 connections);
+  return room;
 }
 
 }  // namespace
@@ -192,6 +202,7 @@ struct Daemon::Parts {
 
   Status make_http(const Config& config) {
     auto settings = http_settings(config);
+    settings.max_connections = room_for(settings.max_connections);
     if (auto status = make_doors(config, settings); !status) return status;
     feed = std::make_unique<FeedThread>(*cell);
     router = api::make_routes(*cell, feed->hub(), *operations);

@@ -188,6 +188,9 @@ void LiveSensor::set_pose(api::PoseReport::Known known, const PoseOrigin& origin
                           std::shared_ptr<const BackgroundMap> background) {
   const std::lock_guard lock(mutex_);
   if (monitor_) monitor_->set_pose(*known.result.T_base_sensor, std::move(background));
+  // A pose of the future was stamped by a clock that was wrong then, or is now: it is not younger than new.
+  const auto age = std::chrono::system_clock::now() - known.calibrated_at;
+  calibrated_at_ = Clock::now() - std::max<Clock::duration>(age, Clock::duration::zero());
   known_ = std::move(known);
   evidence_.reset();
   ++pose_number_;

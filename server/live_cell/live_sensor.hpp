@@ -164,6 +164,7 @@ class LiveSensor {
   std::array<std::uint64_t, kFrameVerdicts> counts_{};
   PoseWatch watch_;
   std::optional<api::PoseReport::Known> known_;
+  Clock::time_point calibrated_at_;  // of known_, as the clock of the day had it when the pose took over
   std::optional<PoseEvidence> evidence_;
   Clock::time_point checked_at_;
   Clock::time_point moved_at_;     // when it was last found to have moved

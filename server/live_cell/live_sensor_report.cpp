@@ -36,6 +36,7 @@ api::PoseReport LiveSensor::pose() const {
   report.valid = known_ && watch_.is_valid(now);
   report.reason = watch_.reason(now);
   report.known = known_;
+  if (known_) report.age = now - calibrated_at_;
   report.last_check = watch_.last_check(now);
   report.passed_check_age = watch_.passed_check_age(now);
   report.max_unverified = settings_.watch.max_unverified;

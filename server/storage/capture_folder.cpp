@@ -72,13 +72,19 @@ Result<std::string> CaptureFolder::read(const std::string& calibration_id) const
   return tar;
 }
 
+/// A wall clock that leaps ahead while the daemon runs makes nothing old at once.
+std::chrono::system_clock::time_point CaptureFolder::now() const {
+  const auto passed = std::chrono::steady_clock::now() - opened_steady_;
+  return std::min(std::chrono::system_clock::now(),
+                  opened_ + std::chrono::duration_cast<std::chrono::system_clock::duration>(passed));
+}
+
 void CaptureFolder::remove_old(std::uint64_t room) {
   const std::lock_guard lock(removing_);
   const auto kept = oldest_first(folder_);
   std::uint64_t bytes = room;
   for (const auto& one : kept) bytes += one.bytes;
-  const auto now =
-      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
+  const auto now = std::chrono::duration_cast<std::chrono::seconds>(this->now().time_since_epoch());
   for (const auto& one : kept) {
     const bool is_old = now - std::chrono::seconds(one.modified_s) > limits_.age || !keeps_any();
     if (!is_old && bytes <= limits_.bytes) continue;

@@ -36,9 +36,12 @@ class CaptureFolder {
 
  private:
   std::filesystem::path file_of(const std::string& calibration_id) const;
+  std::chrono::system_clock::time_point now() const;
 
   const std::filesystem::path folder_;
   const CaptureLimits limits_;
+  const std::chrono::system_clock::time_point opened_ = std::chrono::system_clock::now();
+  const std::chrono::steady_clock::time_point opened_steady_ = std::chrono::steady_clock::now();
   std::mutex removing_;
 };
 

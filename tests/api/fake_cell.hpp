@@ -58,6 +58,7 @@ class FakeCell : public CellService {
     result.sigma_position_m = 0.001;
     pose_report.known =
         PoseReport::Known{"c1", std::chrono::system_clock::now() - std::chrono::seconds(90), result};
+    pose_report.age = Seconds(90);
     pose_report.state = PoseState::calibrated;
     pose_report.valid = true;
     pose_report.passed_check_age = Seconds(0.5);

@@ -53,12 +53,14 @@ TEST_F(LinkMachineTest, BacksOffAfterRefusalsUpToTheCap) {
 
 TEST_F(LinkMachineTest, GivesUpAnAttemptNobodyAnswers) {
   obey(machine_.start(now_));
-  pass(1999ms);
-  EXPECT_FALSE(asked_to<link_step::Close>());
-  pass(1ms);
-  EXPECT_TRUE(asked_to<link_step::Close>());
-  EXPECT_TRUE(reason_is(RobotLinkError::no_answer));
-  EXPECT_EQ(pause(), 50ms);
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    pass(899ms);
+    EXPECT_FALSE(asked_to<link_step::Close>());
+    pass(1ms);
+    EXPECT_TRUE(asked_to<link_step::Close>());
+    EXPECT_TRUE(reason_is(RobotLinkError::no_answer));
+    EXPECT_EQ(pause(), 50ms) << "however many there were: the attempt itself was a pause";
+  }
 }
 
 TEST_F(LinkMachineTest, ASettledConnectionMakesThePauseShortAgain) {
