@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kLeastPostures = 5, kMostPostures = 20;
 /// Of the joint that differs most: what is nearer is the same posture again.
 constexpr double kDiffer_rad = 0.2;
+/// A creep of 1 mm per hour moves the mean by half of it meanwhile.
+constexpr double kOldest_s = 3600;
 /// What postures of a region of the workspace have in common is not averaged out.
 constexpr double kFloor_m = 3e-4, kFloor_rad = 3e-4;
 
@@ -27,15 +29,17 @@ void PostureMean::add(const PoseCheck& check, std::span<const double> joints_rad
   posture_.newest = check;
 }
 
-void PostureMean::end_posture() {
-  const Posture ended = std::exchange(posture_, {});
+void PostureMean::end_posture(double now_s) {
+  std::erase_if(ended_, [&](const Posture& other) { return now_s - other.left_s > kOldest_s; });
+  Posture ended = std::exchange(posture_, {});
   // One that disagrees is the business of RobotWord's CUSUM, and would linger here.
   if (ended.checks == 0 || !ended.newest.agrees) return;
   std::erase_if(ended_, [&](const Posture& other) {
     return std::ranges::equal(other.joints_rad, ended.joints_rad,
                               [](double a, double b) { return std::abs(a - b) < kDiffer_rad; });
   });
-  ended_.push_back(ended);
+  ended.left_s = now_s;
+  ended_.push_back(std::move(ended));
   if (ended_.size() > kMostPostures) ended_.pop_front();
 }
 

@@ -31,7 +31,7 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
     posture_.assign(joints.begin(), joints.end());
     before_posture_ = std::min(statistic_, kLimit);  // what is mended shows soon
     posture_sigmas_ = posture_checks_ = 0;
-    mean_.end_posture();
+    mean_.end_posture(now_s);
   }
   mean_.add(check, joints);
   const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;

@@ -64,6 +64,7 @@ void Healer::on_pose(const api::PoseReport& pose) {
 void Healer::plan(Patient& patient, Clock::time_point now) const {
   if (now - patient.last_move > settings_.calm_after) patient.moves = 0;
   patient.last_move = now;
+  patient.candidate.clear();
   patient.attempts = 0;
   patient.wants_all = false;
   ++patient.moves;
@@ -150,6 +151,7 @@ void Healer::run() {
         wake = std::min(wake, Clock::now() + kCandidateLook);
         continue;
       }
+      if (!patient.candidate.empty()) plan(patient, Clock::now());  // it has moved while somebody thought it over
       if (patient.due <= Clock::now()) next = id;
       wake = std::min(wake, patient.due);
     }

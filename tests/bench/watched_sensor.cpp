@@ -11,7 +11,8 @@ namespace calibrd::bench {
 namespace {
 
 constexpr double kCheckPeriod_s = 1, kDoubtPeriod_s = 0.1;
-constexpr std::size_t kPostures = 6;
+/// Of the calibration, and others that the robot's work takes it to afterwards.
+constexpr std::size_t kPostures = 6, kOtherPostures = 8;
 
 /// Of this thread, so that whoever else runs on the machine does not count.
 double cpu_ms() {
@@ -61,9 +62,10 @@ CalibratedScenes::CalibratedScenes(std::vector<SceneRobot> robots)
 std::unique_ptr<CalibratedScenes::One> CalibratedScenes::get(std::uint64_t seed,
                                                              bool without_other_robot) const {
   sim::CaptureOptions capture;
-  capture.postures = kPostures;
+  capture.postures = kPostures + kOtherPostures;
   auto scene = simulate_scene(robots_[seed % robots_.size()], seed, capture, tables_);
   if (!scene) return nullptr;
+  scene->views.resize(kPostures);
   const auto& state = scene->truth.world->state;
   if (state.person.present != 0) return nullptr;  // else the background holds a person
   if (without_other_robot && state.other_robot.present != 0) return nullptr;

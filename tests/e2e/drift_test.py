@@ -12,6 +12,7 @@ from poses import difference
 MAX_MM, MAX_MRAD = 3.0, 3.0
 SMALL = {"turn_deg": [0, 0.2, 0], "shift_m": [0.004, 0, 0.002]}
 KNOCK = {"turn_deg": [0, 0, 3.0], "shift_m": [0.02, 0.02, 0.01]}
+AGAIN = {"turn_deg": [0, -1.0, 0], "shift_m": [-0.01, 0.01, 0]}
 
 
 class Drift(CellTest):
@@ -69,6 +70,23 @@ class Drift(CellTest):
         self.assertEqual(pose["calibration"], candidate)
         self.assertIsNone(pose["candidate"])
         mm, mrad = difference(pose["T_base_sensor"], simulator.true_pose())
+        self.assertLess(mm, MAX_MM)
+        self.assertLess(mrad, MAX_MRAD)
+
+    def test_a_candidate_of_before_another_knock_is_replaced_and_never_served_as_good(self):
+        simulator, daemon = self.watched("drift.healing=ask")
+        self.knock(simulator, daemon, **KNOCK)
+        stale = wait_until("a candidate", lambda: daemon.pose()["candidate"], 60)
+        simulator.tell("POST", f"/sensors/{SENSOR}/knock", **AGAIN)
+        candidate = wait_until("another candidate", lambda: c if (c := daemon.pose()["candidate"]) not in (None, stale) else None, 60)
+        self.assertEqual(call(daemon.port, "POST", f"/api/v1/calibrations/{stale}/activate").status, 200)
+        until = time.monotonic() + 5
+        while time.monotonic() < until:
+            self.assertFalse(daemon.pose()["valid"], "a pose of before the last knock")
+        self.assertEqual(call(daemon.port, "POST", f"/api/v1/calibrations/{candidate}/activate").status, 200)
+        pose = wait_until("the newer candidate is the pose", lambda: p if (p := daemon.pose())["valid"] else None, 30)
+        mm, mrad = difference(pose["T_base_sensor"], simulator.true_pose())
+        print(f"candidate after two knocks: {mm:.2f} mm, {mrad:.2f} mrad off")
         self.assertLess(mm, MAX_MM)
         self.assertLess(mrad, MAX_MRAD)
 

@@ -158,6 +158,27 @@ class SeveralSensors(CellTest):
         self.assertEqual(set(cloud.of), {0, 1, 2})
         self.expect_one_bench(cloud)
 
+    def test_one_that_is_knocked_is_healed_and_the_other_stays_as_it_is(self):
+        simulator, daemon = self.start(SENSOR, "left")
+        self.calibrate_all(simulator, daemon, 2)
+        poses = {name: daemon.json(f"/api/v1/sensors/{name}/pose") for name in (SENSOR, "left")}
+        wait_until("both are watched and stand", lambda: all(
+            daemon.json(f"/api/v1/sensors/{name}/drift")["verdict"] == "in_place" for name in poses))
+        simulator.tell("POST", "/sensors/left/knock", turn_deg=[0, 0, 3.0], shift_m=[0.02, 0.02, 0.01])
+
+        def healed():
+            other = daemon.json(f"/api/v1/sensors/{SENSOR}/pose")
+            self.assertTrue(other["valid"], other)
+            self.assertEqual(other["calibration"], poses[SENSOR]["calibration"])
+            pose = daemon.json("/api/v1/sensors/left/pose")
+            return pose if pose["valid"] and pose["calibration"] != poses["left"]["calibration"] else None
+        pose = wait_until("the knocked one is healed", healed, 60)
+        truth = next(t for t in simulator.truth()["sensors"] if t["id"] == "left")
+        mm, mrad = difference(pose["T_base_sensor"], truth["T_base_sensor"])
+        print(f"the knocked one of two: off by {mm:.2f} mm, {mrad:.2f} mrad")
+        self.assertLess(mm, MAX_MM)
+        self.assertLess(mrad, MAX_MRAD)
+
     def test_one_with_wrong_intrinsics_is_contradicted_by_the_other_though_its_own_views_cannot_tell(self):
         _, daemon = self.start(SENSOR, "top", wrong={"top": TOO_LONG})
         started = call(daemon.port, "POST", "/api/v1/cell/calibrations", {"postures": 5}).json()["calibrations"]

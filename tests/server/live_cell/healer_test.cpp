@@ -181,8 +181,8 @@ TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {
   EXPECT_EQ(healer_->candidate("eye"), "");
 }
 
-TEST_F(Healing, ACandidateOfBeforeAnotherMoveIsNoneAndAnotherIsFound) {
-  begin(HealingMode::ask, 0ms);
+TEST_F(Healing, ACandidateOfBeforeAnotherMoveIsNoneAndAnotherIsFoundAtOnce) {
+  begin(HealingMode::ask, 10min);
   set_state(api::PoseState::drifted);
   ASSERT_TRUE(wait_for(1));
   end("c1", api::JobStatus::succeeded, false);
@@ -191,6 +191,7 @@ TEST_F(Healing, ACandidateOfBeforeAnotherMoveIsNoneAndAnotherIsFound) {
   EXPECT_EQ(healer_->candidate("eye"), "");
   ASSERT_TRUE(wait_for(2));
   EXPECT_FALSE(requests_[1].activate);
+  EXPECT_TRUE(requests_[1].patience) << "as after any knock: quickly first";
 }
 
 TEST_F(Healing, OffDoesNothing) {
