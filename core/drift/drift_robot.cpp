@@ -21,6 +21,16 @@ constexpr double kUnpinned_s = 30;
 constexpr double kMostFollowed = 1.5;  // of what was followed, the robot may show: it lags, and is uncertain
 constexpr double kMeanFrames = 7;      // that the mean of the test is of
 
+/// Of those that tell by how much the robot is off.
+std::vector<RobotShift> shifts_of(const std::vector<PoseCheck>& checks) {
+  std::vector<RobotShift> shifts;
+  for (const PoseCheck& check : checks)
+    if (check.shift_sigmas > 0)
+      shifts.push_back(
+          {check.turn_shift, check.turn_shift_covariance, check.middle_base, check.shift_sigmas});
+  return shifts;
+}
+
 }  // namespace
 
 void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joints_rad, double now_s) {
@@ -28,9 +38,7 @@ void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joint
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
   if (model_wrong_ || moved_) return;
   if (robot_word_.is_against()) {
-    const PoseCheck& newest = *robot_word_.newest();
-    moved_ = is_robots_shift_possible(
-        {newest.turn_shift, newest.turn_shift_covariance, newest.middle_base, newest.shift_sigmas});
+    moved_ = is_robots_shift_possible(shifts_of(robot_word_.doubts()));
     model_wrong_ = !moved_;
   } else {
     moved_ = has_crept();
@@ -43,7 +51,7 @@ bool DriftWatch::has_crept() const {
   const bool is_shown = has_background() && frame_s_ - finely_pinned_s_ < kUnpinned_s;
   const auto creep = robot_word_.creep();
   if (!creep || (is_shown && !is_what_was_followed(*creep))) return false;
-  return is_robots_shift_possible(*creep);
+  return is_robots_shift_possible({&*creep, 1});
 }
 
 /// What the robot shows is, but for what is uncertain of it, some part of what the background has followed.
@@ -73,18 +81,34 @@ bool DriftWatch::robot_denies_the_shift(double now_s) const {
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
-bool DriftWatch::is_robots_shift_possible(const RobotShift& robot) const {
+bool DriftWatch::is_robots_shift_possible(std::span<const RobotShift> postures) const {
   if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
-  if (!(robot.sigmas > 0))
+  if (postures.empty())
     return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
-  const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_ * map_.middle_sensor());
-  const Vector6d left = robot.turn_shift - move * test_.mean();
-  Matrix6d mean_covariance = *last_covariance_ / kMeanFrames;
-  mean_covariance.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);
-  mean_covariance.diagonal().tail<3>().array() += std::pow(settings_.shift.tolerance_m, 2);
-  mean_covariance += followed_ * followed_.transpose();
-  const Matrix6d covariance = robot.covariance + move * mean_covariance * move.transpose();
-  return left.dot(covariance.ldlt().solve(left)) < kUnexplainedShare * std::pow(robot.sigmas, 2);
+  return is_one_move(postures);
+}
+
+/// One move of the sensor that the background leaves possible explains what all postures show. Of one posture
+/// a slide along a wall explains nearly everything; of several not what turns with a joint.
+bool DriftWatch::is_one_move(std::span<const RobotShift> postures) const {
+  Matrix6d before = *last_covariance_ / kMeanFrames;
+  before.diagonal().head<3>().array() += std::pow(settings_.shift.tolerance_rad, 2);
+  before.diagonal().tail<3>().array() += std::pow(settings_.shift.tolerance_m, 2);
+  before += followed_ * followed_.transpose();
+  Matrix6d information = before.ldlt().solve(Matrix6d::Identity());
+  Vector6d pull = Vector6d::Zero();  // of the move beyond what the background shows itself
+  double left = 0, shown = 0;        // χ²
+  for (const RobotShift& robot : postures) {
+    const Matrix6d move = shift_of_point(robot.middle_base - T_base_sensor_ * map_.middle_sensor());
+    const Vector6d off = robot.turn_shift - move * test_.mean();
+    const Eigen::LDLT<Matrix6d> solver(robot.covariance);
+    information += move.transpose() * solver.solve(move);
+    pull += move.transpose() * solver.solve(off);
+    left += off.dot(solver.solve(off));
+    shown += std::pow(robot.sigmas, 2);
+  }
+  left -= pull.dot(information.ldlt().solve(pull));
+  return left < kUnexplainedShare * shown;
 }
 
 }  // namespace calibrd

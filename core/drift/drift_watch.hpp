@@ -97,7 +97,8 @@ class DriftWatch {
   void judge(double now_s);
   void on_denial();
   bool robot_denies_the_shift(double now_s) const;
-  bool is_robots_shift_possible(const RobotShift& robot) const;
+  bool is_robots_shift_possible(std::span<const RobotShift> postures) const;
+  bool is_one_move(std::span<const RobotShift> postures) const;
   bool has_crept() const;
   bool is_what_was_followed(const RobotShift& robot) const;
   bool is_known_to_stand() const;

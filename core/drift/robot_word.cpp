@@ -15,6 +15,7 @@ constexpr double kAllowance = 2.7, kPostureWeight = 2, kLimit = 5.5;
 constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
 /// Of the postures together (docs/figures.md has what it finds).
 constexpr double kCreepSigmas = 4;
+constexpr std::size_t kMostDoubts = 6;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 
 bool is_same_posture(std::span<const double> a, std::span<const double> b) {
@@ -25,14 +26,17 @@ bool is_same_posture(std::span<const double> a, std::span<const double> b) {
 
 void RobotWord::add(const PoseCheck& check, std::span<const double> joints, double now_s) {
   if (!check.enough_evidence) return;
-  newest_ = check;
-  stamp_s_ = now_s;
   if (!is_same_posture(posture_, joints)) {
+    if (statistic_ > 0) doubts_.push_back(*newest_);
+    if (statistic_ <= 0) doubts_.clear();
+    if (doubts_.size() > kMostDoubts) doubts_.erase(doubts_.begin());
     posture_.assign(joints.begin(), joints.end());
     before_posture_ = std::min(statistic_, kLimit);  // what is mended shows soon
     posture_sigmas_ = posture_checks_ = 0;
     mean_.end_posture(now_s);
   }
+  newest_ = check;
+  stamp_s_ = now_s;
   mean_.add(check, joints);
   const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
   ++posture_checks_;
@@ -55,6 +59,12 @@ bool RobotWord::is_off(double now_s) const { return newest_ && !newest_->agrees 
 std::optional<RobotShift> RobotWord::creep() const {
   const auto shift = mean_.shift();
   return shift && shift->sigmas > kCreepSigmas ? shift : std::nullopt;
+}
+
+std::vector<PoseCheck> RobotWord::doubts() const {
+  auto doubts = doubts_;
+  if (newest_) doubts.push_back(*newest_);
+  return doubts;
 }
 
 bool RobotWord::is_against() const { return statistic_ > kLimit; }

@@ -31,6 +31,8 @@ class RobotWord {
   bool has_doubt() const { return statistic_ > 0; }
   /// Postures on end have spoken against pose and model ...
   bool is_against() const;
+  /// ... of each of them, since the doubt began, its newest comparison ...
+  std::vector<PoseCheck> doubts() const;
   /// ... or do so no longer.
   bool is_against_no_more() const;
 
@@ -47,6 +49,7 @@ class RobotWord {
   std::vector<double> posture_;  // that is looked at
   double posture_sigmas_ = 0;    // mean of its comparisons
   int posture_checks_ = 0;
+  std::vector<PoseCheck> doubts_;  // of postures that it has left
   PostureMean mean_;
 };
 

@@ -11,7 +11,10 @@ namespace calibrd {
 struct SceneChangeSettings {
   double settle_s = 1;           ///< what has gone, and stays so for this long, is a change of the scene
   double stand_s = 4;            ///< ... what has come
-  std::size_t least_cells = 12;  ///< with all four neighbours changed, too: edges flicker
+  std::size_t least_cells = 12;  ///< with three neighbours of four changed, too: edges flicker
+  /// What was measured and is dark is a change for so long: something black has come, or nothing is in reach
+  /// where something was.
+  double dark_s = 60;
 };
 
 /// Tells what passes in front of the background from what has changed for good: the former moves. Follows
@@ -45,9 +48,11 @@ class SceneChange {
     CellState state = CellState::same;
     float depth_m = 0;
     double since_s = 0;  // when it came to show this
+    double dark_since_s = -1;
   };
   void count(double now_s);
-  bool is_surrounded(std::size_t cell) const;
+  bool is_dark_change(const Cell& cell) const;
+  int changed_neighbours(std::size_t cell) const;
 
   SceneChangeSettings settings_;
   std::size_t width_;

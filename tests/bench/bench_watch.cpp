@@ -15,7 +15,8 @@ namespace {
 
 namespace json = boost::json;
 
-constexpr double kQuiet_s = 2, kWatched_s = 12, kTwoPostures_s = 30;
+/// From posture to posture the robot goes for some seven seconds.
+constexpr double kQuiet_s = 2, kWatched_s = 12, kPostures_s = 60;
 constexpr double kLeastVerdict_s = 0.3;
 constexpr double kLasting_s = 2;  // shown in all, the right verdict has shown itself
 
@@ -61,8 +62,8 @@ json::object run_event(const CalibratedScenes::One& one,
   const std::string what = cell.stage(event);
   if (what.empty()) return {};
   int frames = 0, detected = -1;
-  // The robot must come to rest in two postures before one says that it is wrong.
-  const double until_s = kQuiet_s + (event == Event::robot_model_wrong ? kTwoPostures_s : kWatched_s);
+  // The robot must come to rest in two postures, and show the joint there, before one says that it is wrong.
+  const double until_s = kQuiet_s + (event == Event::robot_model_wrong ? kPostures_s : kWatched_s);
   while (cell.time_s() < until_s) {
     const std::string verdict = name_of(sensor.see(cell.next()));
     ++frames;

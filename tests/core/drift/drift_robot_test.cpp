@@ -137,6 +137,16 @@ TEST_F(BeforeAWall, TheRobotTellsOfAMoveThatTheWallDoesNotShow) {
   EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
 }
 
+TEST_F(BeforeAWall, WhatIsAnotherMoveInEachPostureIsTheModel) {
+  watch_for(1);
+  check(Vector6d::Zero());
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    check(along_the_wall(posture % 2 == 0 ? 0.012 : -0.012));
+  }
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::robot_model_wrong);
+}
+
 TEST_F(BeforeAWall, WhatNoPostureTellsManyTellTogether) {
   moved_ = along_the_wall(0.0022);
   for (int posture = 0; posture < 4; ++posture) {

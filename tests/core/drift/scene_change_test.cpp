@@ -98,6 +98,31 @@ TEST_F(SceneChanges, FlickeringEdgesDoNotCount) {
   EXPECT_FALSE(scene_.has_changed());
 }
 
+TEST_F(SceneChanges, ANarrowPostCounts) {
+  Picture post;
+  for (std::size_t y = 5; y < 25; ++y)
+    for (std::size_t x = 15; x < 17; ++x) post.states[y * kWidth + x] = CellState::farther;
+  show(2, post);
+  EXPECT_TRUE(scene_.has_changed());
+}
+
+TEST_F(SceneChanges, WhatNothingIsBehindLeavesDarknessForAMinute) {
+  show(1, Picture());
+  show(3, Picture().square(10, CellState::dark, 0));
+  EXPECT_FALSE(scene_.has_changed());
+  show(2, Picture().square(10, CellState::dark, 0));
+  EXPECT_TRUE(scene_.has_changed());
+  EXPECT_FALSE(scene_.is_something_in_front());
+  show(60, Picture().square(10, CellState::dark, 0));
+  EXPECT_FALSE(scene_.has_changed());
+}
+
+TEST_F(SceneChanges, PixelsThatFailNowAndThenAreNoDarkness) {
+  int frame = 0;
+  show(10, [&](double) { return ++frame % 30 == 0 ? Picture() : Picture().square(10, CellState::dark, 0); });
+  EXPECT_FALSE(scene_.has_changed());
+}
+
 TEST_F(SceneChanges, GoesWhenAllIsAsItWas) {
   show(5, Picture().square(10, CellState::nearer, 1));
   show(0.1, Picture());
