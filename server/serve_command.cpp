@@ -18,6 +18,8 @@
 #include "server/daemon/end_signal.hpp"
 #include "server/logging/logging.hpp"
 #include "server/operations/notify_socket.hpp"
+#include "server/reload.hpp"
+#include "server/security/run_as.hpp"
 
 namespace calibrd {
 namespace {
@@ -38,26 +40,53 @@ int only_check(const Config& config) {
   return 0;
 }
 
+using Starting = std::shared_future<Result<std::shared_ptr<Daemon>>>;
+
+/// Waits for the end; on the way there, reads the configuration again whenever that is asked for.
+int wait_for_end(const EndSignal& signals, const Starting& starting, const ConfigSources& sources,
+                 Config now) {
+  for (;;) {
+    const int number = signals.wait();
+    if (number != SIGHUP) return number;
+    if (starting.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+      spdlog::warn("SIGHUP: the daemon is still starting; send it again when it listens");
+    else if (starting.get())
+      reload(sources, **starting.get(), now);
+  }
+}
+
+/// What takes rights that are given up for good then.
+Result<api::Entrance> enter(const ServerConfig& server, const Config& config) {
+  auto entrance = Daemon::open(config);
+  if (!entrance || server.run_as.empty()) return entrance;
+  if (auto status = become(server.run_as); !status) return status.error();
+  return entrance;
+}
+
 /// Starts in a thread of its own, so that the signal is heard while a large robot model is being read.
-int serve(const LoadedConfig& loaded) {
+int serve(const LoadedConfig& loaded, const ConfigSources& sources) {
   const Config& config = loaded.config;
   const auto orders = take_notify_orders();
   const auto socket = NotifySocket::open(orders.address);
   const ServiceManager manager{socket ? &*socket : nullptr, orders.watchdog};
-  const EndSignal end;
-  auto starting = std::async(std::launch::async, [&, main = pthread_self()] {
-    auto daemon = Daemon::start(config, CALIBRD_VERSION, config_as_toml(loaded), manager);
-    if (daemon)
-      spdlog::info("calibrd {} listens on {}:{}", CALIBRD_VERSION, config.server.address,
-                   (*daemon)->http_port());
-    else
+  const EndSignal signals;
+  const auto entrance = enter(config.server, config);
+  if (!entrance) return refuse(entrance.error());
+  const auto start = [&, main = pthread_self()]() -> Result<std::shared_ptr<Daemon>> {
+    auto daemon = Daemon::start(config, *entrance, CALIBRD_VERSION, config_as_toml(loaded), manager);
+    if (!daemon) {
       pthread_kill(main, SIGTERM);
-    return daemon;
-  });
-  const int number = end.wait();
+      return daemon.error();
+    }
+    spdlog::info("calibrd {} listens on {}:{}", CALIBRD_VERSION, config.server.address,
+                 (*daemon)->http_port());
+    return std::shared_ptr<Daemon>(*std::move(daemon));
+  };
+  const Starting starting = std::async(std::launch::async, start).share();
+  const int number = wait_for_end(signals, starting, sources, config);
   if (socket) socket->send("STOPPING=1");
   EndSignal::end_within(kPatience);
-  const auto daemon = starting.get();
+  const auto& daemon = starting.get();
   if (!daemon) return refuse(daemon.error());
   spdlog::info("ending on {}", strsignal(number));
   (*daemon)->stop();
@@ -85,14 +114,15 @@ void add_serve_options(CLI::App& command, ServeOptions& options) {
 }
 
 int run_serve(const ServeOptions& options) {
-  const auto loaded = load_config(sources_of(options));
+  const auto sources = sources_of(options);
+  const auto loaded = load_config(sources);
   if (!loaded) return refuse(loaded.error());
   if (options.print_config) {
     std::cout << config_as_toml(*loaded);
     return 0;
   }
   start_logging(loaded->config.log);
-  return options.check_config ? only_check(loaded->config) : serve(*loaded);
+  return options.check_config ? only_check(loaded->config) : serve(*loaded, sources);
 }
 
 }  // namespace calibrd

@@ -45,7 +45,7 @@ std::optional<Response> Doorkeeper::refuse(Request& request, Scope needed, const
     return response;
   }
   if (auto refusal = refuse_foreign(request)) return refusal;
-  return refuse_caller(request, needed);
+  return refuse_caller(request, needed, peer);
 }
 
 std::optional<Response> Doorkeeper::refuse_foreign(const Request& request) const {
@@ -60,8 +60,8 @@ std::optional<Response> Doorkeeper::refuse_foreign(const Request& request) const
   return std::nullopt;
 }
 
-std::optional<Response> Doorkeeper::refuse_caller(Request& request, Scope needed) const {
-  request.caller = "local";
+std::optional<Response> Doorkeeper::refuse_caller(Request& request, Scope needed, const Peer& peer) const {
+  request.caller = peer.certificate.empty() ? "local" : "cert:" + peer.certificate;
   request.granted = Scope::admin;
   if (!settings_.authenticator) return std::nullopt;
   request.caller.clear();
@@ -83,9 +83,9 @@ std::optional<Response> Doorkeeper::refuse_caller(Request& request, Scope needed
   return std::nullopt;
 }
 
-bool Doorkeeper::still_admits(const Request& request, Scope needed) const {
+bool Doorkeeper::still_admits(const Request& request, Scope needed, const Peer& peer) const {
   Request again{request.method, {}, {}, {{"authorization", request.header("authorization")}}, {}};
-  return !refuse_caller(again, needed);
+  return !refuse_caller(again, needed, peer);
 }
 
 }  // namespace calibrd::api

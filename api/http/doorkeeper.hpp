@@ -17,6 +17,7 @@ struct Peer {
   std::string address;   ///< as text
   std::string rate_key;  ///< whom its requests are counted for: an address, of IPv6 the network (/64)
   bool is_loopback = false;
+  std::string certificate = {};  ///< name in the one it has shown; empty: none
 };
 
 /// Decides which requests come in, before a route sees them. One thread.
@@ -29,11 +30,11 @@ class Doorkeeper {
                                  RateLimiter::Time now = std::chrono::steady_clock::now());
 
   /// Whether an answer that goes on may go on: tokens can be revoked meanwhile.
-  bool still_admits(const Request& request, Scope needed) const;
+  bool still_admits(const Request& request, Scope needed, const Peer& peer) const;
 
  private:
   std::optional<Response> refuse_foreign(const Request& request) const;
-  std::optional<Response> refuse_caller(Request& request, Scope needed) const;
+  std::optional<Response> refuse_caller(Request& request, Scope needed, const Peer& peer) const;
 
   const DoorSettings settings_;
   const HostRules hosts_;

@@ -20,6 +20,7 @@
 #include "api/http/doorkeeper.hpp"
 #include "api/http/http_server_error.hpp"
 #include "api/http/session.hpp"
+#include "api/http/tls.hpp"
 #include "core/base/thread_name.hpp"
 
 namespace calibrd::api {
@@ -33,13 +34,6 @@ using ErrorCode = boost::system::error_code;
 constexpr std::size_t kMaxRefusals = 32;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
-Error translated(const ErrorCode& why, const std::string& where) {
-  if (why == asio::error::address_in_use) return {HttpServerError::port_in_use, where};
-  if (why == asio::error::access_denied) return {HttpServerError::not_allowed, where};
-  if (why == boost::system::errc::address_not_available) return {HttpServerError::bad_address, where};
-  return {HttpServerError::cannot_listen, where + " (" + why.message() + ")"};
-}
-
 }  // namespace
 
 class HttpServer::Impl {
@@ -50,8 +44,8 @@ class HttpServer::Impl {
         log_(std::move(log)),
         watch_(watch ? *watch : own_watch_),
         workers_(std::make_unique<asio::thread_pool>(static_cast<std::size_t>(settings.workers))),
-        door_(settings_.door),
-        context_{settings_, router, log_, *workers_, door_, watch_} {}
+        max_connections_(static_cast<std::size_t>(settings.max_connections)),
+        context_{settings_, router, log_, *workers_, std::make_shared<Doorkeeper>(settings.door), watch_} {}
 
   ~Impl() {
     stop(std::chrono::milliseconds(0));
@@ -61,17 +55,31 @@ class HttpServer::Impl {
   }
 
   Status listen() {
-    const auto where = settings_.address + ":" + std::to_string(settings_.port);
+    auto entrance = settings_.entrance;
+    if (!entrance.address) {
+      auto opened = HttpServer::open(settings_);
+      if (!opened) return opened.error();
+      entrance = *std::move(opened);
+    }
+    tls_ = std::move(entrance.tls);
     ErrorCode failure;
-    const auto address = asio::ip::make_address(settings_.address, failure);
-    if (failure) return Error{HttpServerError::bad_address, where};
-    const tcp::endpoint endpoint(address, settings_.port);
-    acceptor_.open(endpoint.protocol(), failure);
-    if (!failure) acceptor_.set_option(tcp::acceptor::reuse_address(true), failure);
-    if (!failure) acceptor_.bind(endpoint, failure);
+    acceptor_.assign(entrance.address->is_v6() ? tcp::v6() : tcp::v4(), entrance.address->release(), failure);
     if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
-    if (failure) return translated(failure, where);
+    if (failure)
+      return Error{HttpServerError::cannot_listen, settings_.address + " (" + failure.message() + ")"};
     port_ = acceptor_.local_endpoint(failure).port();
+    return Done{};
+  }
+
+  Status apply(const HttpServerSettings& fresh) {
+    auto tls = make_tls(fresh.tls);
+    if (!tls) return tls.error();
+    asio::post(io_, [this, most = fresh.max_connections, door = std::make_shared<Doorkeeper>(fresh.door),
+                     shared = *std::move(tls)] {
+      max_connections_ = static_cast<std::size_t>(most);
+      context_.door = door;
+      tls_ = shared;
+    });
     return Done{};
   }
 
@@ -117,12 +125,13 @@ class HttpServer::Impl {
   }
 
   void begin_session(tcp::socket socket) {
-    const auto limit = static_cast<std::size_t>(settings_.max_connections);
-    const bool serve = sessions_.size() < limit;
+    const bool serve = sessions_.size() < max_connections_;
     (serve ? watch_.accepted : watch_.refused).add();
-    if (sessions_.size() >= limit + kMaxRefusals) return;
+    // To shake hands with those who are to be told costs more than serving them would.
+    const bool is_told = !tls_ && sessions_.size() < max_connections_ + kMaxRefusals;
+    if (!serve && !is_told) return;
     if (serve) watch_.connections.add(1);
-    const auto session = sessions_.emplace(sessions_.end(), std::move(socket), context_);
+    const auto session = sessions_.emplace(sessions_.end(), std::move(socket), tls_, context_);
     asio::co_spawn(io_, serve ? session->run() : session->refuse(),
                    [this, session, serve](const std::exception_ptr&) {
                      if (serve) watch_.connections.add(-1);
@@ -151,7 +160,8 @@ class HttpServer::Impl {
   HttpWatch own_watch_;  // where nobody else watches
   HttpWatch& watch_;
   std::unique_ptr<asio::thread_pool> workers_;
-  Doorkeeper door_;  // used on the network thread only, as what follows up to port_
+  std::size_t max_connections_;  // used on the network thread only, as what follows up to port_
+  std::shared_ptr<Tls> tls_;     // null: plain HTTP
   SessionContext context_;
   std::list<Session> sessions_;
   asio::io_context io_{1};
@@ -174,9 +184,18 @@ Result<std::unique_ptr<HttpServer>> HttpServer::start(const HttpServerSettings& 
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
 }
 
+Result<Entrance> HttpServer::open(const HttpServerSettings& settings) {
+  auto tls = make_tls(settings.tls);
+  if (!tls) return tls.error();
+  auto address = BoundAddress::bind(settings.address, settings.port);
+  if (!address) return address.error();
+  return Entrance{*std::move(address), *std::move(tls)};
+}
+
 HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HttpServer::~HttpServer() = default;
 void HttpServer::stop(std::chrono::milliseconds grace) { impl_->stop(grace); }
+Status HttpServer::apply(const HttpServerSettings& settings) { return impl_->apply(settings); }
 std::uint16_t HttpServer::port() const { return impl_->port(); }
 
 }  // namespace calibrd::api

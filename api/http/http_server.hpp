@@ -8,12 +8,22 @@
 #include <string>
 
 #include "api/access/audit_record.hpp"
+#include "api/http/bound_address.hpp"
 #include "api/http/door_settings.hpp"
 #include "api/http/http_watch.hpp"
+#include "api/http/tls_settings.hpp"
 #include "api/routes/router.hpp"
 #include "core/base/result.hpp"
 
 namespace calibrd::api {
+
+struct Tls;
+
+/// What a server takes from the system, perhaps while the process still has the right to.
+struct Entrance {
+  std::shared_ptr<BoundAddress> address;
+  std::shared_ptr<Tls> tls;  ///< null: plain HTTP
+};
 
 struct HttpServerSettings {
   std::string address = "127.0.0.1";
@@ -27,6 +37,8 @@ struct HttpServerSettings {
   std::uint32_t header_limit = 8 * 1024;
   std::uint64_t body_limit = 64 * 1024;
   DoorSettings door;
+  TlsSettings tls;
+  Entrance entrance = {};  ///< opened before; else the server does it itself
   /// Told of every request that was to change something, on a worker thread, before it is answered.
   std::function<void(const AuditRecord&)> audit;
 };
@@ -52,6 +64,13 @@ class HttpServer {
                                                    std::function<void(const AccessRecord&)> log = {},
                                                    HttpWatch* watch = nullptr);
   ~HttpServer();
+
+  /// Binds the address and reads the files of TLS. Errors: HttpServerError.
+  static Result<Entrance> open(const HttpServerSettings& settings);
+
+  /// Takes over what can change while it runs: `max_connections`, `door` and `tls`, whose files are read
+  /// again. Open connections keep their certificate. With an error nothing changes.
+  Status apply(const HttpServerSettings& settings);
 
   /// Takes no more connections, lets requests under way end within `grace`, then closes everything. Waits for
   /// slow routes that are still being answered: their service must let go first.

@@ -18,6 +18,15 @@ const char* text(HttpServerError code) {
       return "this user may not listen there; set server.port to 1024 or above";
     case HttpServerError::cannot_listen:
       return "the HTTP server cannot listen; check server.address and server.port";
+    case HttpServerError::bad_certificate:
+      return "the certificate cannot be used; server.tls.certificate must be a PEM file that the daemon's "
+             "user can read";
+    case HttpServerError::bad_key:
+      return "the key cannot be used; server.tls.key must be a PEM file with the key of the certificate, and "
+             "server.tls.key_password_file hold its password where it has one";
+    case HttpServerError::bad_client_ca:
+      return "the certificates of clients cannot be checked; server.tls.client_ca must be a PEM file with "
+             "those of their authorities";
   }
   return "unknown HTTP server error";
 }

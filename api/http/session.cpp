@@ -50,9 +50,19 @@ asio::awaitable<void> Session::run() {
   // GCC 12 evaluates a co_await in a condition when it should not, and destroys twice what an argument of one
   // was made from in passing: in this file both have a line, and a name, of their own.
   bool goes_on = true;
+  if (stream_.has_tls()) goes_on = co_await shake_hands();
+  if (!goes_on) co_return;
   while (goes_on && !context_.stopping) goes_on = co_await serve_one();
-  beast::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+  co_await end_sending();
+}
+
+/// With a deadline, as a header. False: the client shows no certificate it should, or speaks no TLS.
+asio::awaitable<bool> Session::shake_hands() {
+  beast::error_code failure;
+  stream_.expires_after(context_.settings.header_timeout);
+  co_await stream_.async_handshake(asio::redirect_error(asio::use_awaitable, failure));
+  peer_.certificate = stream_.client_name();
+  co_return !failure;
 }
 
 void Session::end_when_idle() {
@@ -130,7 +140,7 @@ beast::error_code Session::parse_header(const HeaderGate& gate, RequestParser& p
 asio::awaitable<bool> Session::serve(Request request, RequestParser& parser) {
   const auto begin = std::chrono::steady_clock::now();
   const bool keep_alive = parser.get().keep_alive() && !context_.stopping;
-  auto refusal = context_.door.refuse(request, context_.router.scope(request), peer_);
+  auto refusal = context_.door->refuse(request, context_.router.scope(request), peer_);
   if (refusal) {
     log(request, *refusal, begin);
     bool goes_on = false;

@@ -4,8 +4,8 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 
+#include "api/http/connection.hpp"
 #include "api/http/header_gate.hpp"
 #include "api/http/http_server.hpp"
 #include "api/http/peer.hpp"
@@ -20,7 +20,7 @@ struct SessionContext {
   const Router& router;
   const std::function<void(const AccessRecord&)>& log;
   boost::asio::thread_pool& workers;
-  Doorkeeper& door;
+  std::shared_ptr<Doorkeeper> door;  ///< replaced by a reload
   HttpWatch& watch;
   RequestIds request_ids = {};
   bool stopping = false;
@@ -29,8 +29,8 @@ struct SessionContext {
 /// One connection: reads requests and writes answers until either side ends it.
 class Session {
  public:
-  Session(boost::asio::ip::tcp::socket socket, SessionContext& context)
-      : stream_(std::move(socket)), peer_(peer_of(stream_.socket())), context_(context) {}
+  Session(boost::asio::ip::tcp::socket socket, std::shared_ptr<Tls> tls, SessionContext& context)
+      : stream_(std::move(socket), std::move(tls)), peer_(peer_of(stream_.socket())), context_(context) {}
 
   boost::asio::awaitable<void> run();
   /// Answers 503 and closes: there are too many connections.
@@ -41,6 +41,7 @@ class Session {
   void close() { stream_.close(); }
 
  private:
+  boost::asio::awaitable<bool> shake_hands();
   boost::asio::awaitable<bool> serve_one();
   boost::asio::awaitable<bool> await_request();
   boost::asio::awaitable<HeaderGate::Verdict> pass_header(HeaderGate& gate);
@@ -56,12 +57,13 @@ class Session {
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
   boost::asio::awaitable<void> write_stream(const Request& request, Response response);
   boost::asio::awaitable<void> end_with(Response response);
+  boost::asio::awaitable<void> end_sending();
 
   /// Bytes that have come and are not parsed yet: no line of a chunked body may be longer.
   static constexpr std::size_t kMostBuffered = 128 * 1024;
 
-  boost::beast::tcp_stream stream_;
-  const Peer peer_;
+  Connection stream_;
+  Peer peer_;
   boost::beast::flat_buffer buffer_{kMostBuffered};
   SessionContext& context_;
   bool idle_ = true;

@@ -40,8 +40,7 @@ asio::awaitable<void> Session::refuse() {
   request_id_ = context_.request_ids.next();
   auto refusal = problem(ApiError::too_many_connections);
   co_await write(std::move(refusal), false, false);
-  beast::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+  co_await end_sending();
 }
 
 /// Its end is that of the connection.
@@ -53,7 +52,7 @@ asio::awaitable<void> Session::write_stream(const Request& request, Response res
   beast::error_code failure;
   co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
   asio::steady_timer pause(stream_.get_executor());
-  while (!failure && !head && !context_.stopping && context_.door.still_admits(request, scope)) {
+  while (!failure && !head && !context_.stopping && context_.door->still_admits(request, scope, peer_)) {
     const std::string text = response.stream->next();
     if (!text.empty()) {
       stream_.expires_after(context_.settings.write_timeout);
@@ -87,8 +86,8 @@ asio::awaitable<bool> Session::write(Response response, bool head, bool keep_ali
 /// it; so what still comes is read and forgotten, for a moment.
 asio::awaitable<void> Session::end_with(Response response) {
   co_await write(std::move(response), false, false);
+  co_await end_sending();
   beast::error_code failure;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, failure);
   idle_ = true;
   stream_.expires_after(kDrainTime);
   std::size_t forgotten = 0;
@@ -96,9 +95,20 @@ asio::awaitable<void> Session::end_with(Response response) {
     buffer_.clear();
     const auto space = buffer_.prepare(kReadAtOnce);
     const auto size =
-        co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
+        co_await stream_.tcp().async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
     forgotten += size;
   }
+}
+
+/// A client of TLS must hear that nothing more comes: it could not tell the end from an attack.
+asio::awaitable<void> Session::end_sending() {
+  beast::error_code failure;
+  idle_ = true;
+  if (stream_.has_tls()) {
+    stream_.expires_after(kDrainTime);
+    co_await stream_.async_shutdown(asio::redirect_error(asio::use_awaitable, failure));
+  }
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, failure);
 }
 
 }  // namespace calibrd::api

@@ -16,6 +16,13 @@ namespace calibrd {
 
 using Duration = std::chrono::milliseconds;
 
+struct TlsConfig {
+  std::filesystem::path certificate;
+  std::filesystem::path key;
+  std::filesystem::path key_password_file;
+  std::filesystem::path client_ca;
+};
+
 struct ServerConfig {
   std::string address = "127.0.0.1";
   int port = 8080;
@@ -25,6 +32,8 @@ struct ServerConfig {
   std::vector<std::string> hosts;
   int rate_limit = 2000;
   int loopback_rate_limit = 20'000;
+  std::string run_as;
+  TlsConfig tls;
 };
 
 /// How one joint of the model follows the controller: see JointMappingEntry.

@@ -28,7 +28,7 @@ std::vector<std::string> config_warnings(const Config& config) {
                          " (right only where the device removes the distortion itself)");
   }
   const bool is_reached = config.server.address != "127.0.0.1" && config.server.address != "::1";
-  const bool is_open = is_reached && config.server.tokens_file.empty();
+  const bool is_open = is_reached && config.server.tokens_file.empty() && config.server.tls.client_ca.empty();
   if (is_open)
     warnings.push_back("server.allow_unauthenticated with server.address = \"" + config.server.address +
                        "\": whoever reaches the port may do everything, without a token");

@@ -166,7 +166,15 @@ Status check_sensor_ids(const Config& config) {
   return Done{};
 }
 
+Status check_tls(const TlsConfig& tls) {
+  const bool has_certificate = !tls.certificate.empty();
+  if (has_certificate == !tls.key.empty() && (has_certificate || tls.client_ca.empty())) return Done{};
+  return Error{ConfigError::bad_value,
+               "server.tls.certificate and server.tls.key are needed together, and for client_ca both"};
+}
+
 Status check_whole(const Config& config) {
+  if (auto status = check_tls(config.server.tls); !status) return status;
   if (auto status = check_required(config); !status) return status;
   if (auto status = check_sensor_ids(config); !status) return status;
   for (const auto& [id, sensor] : config.sensors)

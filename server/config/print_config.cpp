@@ -25,6 +25,9 @@ A key that does not exist, or a value of the wrong type or range, stops the star
 the line and the nearest name. `calibrd serve --check-config` only checks. `--print-config` prints the configuration in
 effect, and where each value came from. Relative paths in a file are relative to that file.
 
+On SIGHUP a running daemon reads it all again. It applies the keys marked *live*, and names in its log those that have changed and take a
+restart; a configuration that cannot be used changes nothing.
+
 `NAME` is a joint of the robot model (of `motion.routes` a name of your choice), `ID` a name of your choice for a sensor; a table may be given for any number of them.
 This page is generated: `calibrd config-reference > docs/configuration.md`.
 )";
@@ -103,7 +106,8 @@ std::string config_reference() {
       page += "\n## [" + section + "]\n\n| key | type | unit | default | meaning |\n|---|---|---|---|---|\n";
     }
     page += "| `" + path.back() + "` | " + in_table_cell(setting.type) + " | " + setting.unit + " | " +
-            in_table_cell(documented_default(setting)) + " | " + in_table_cell(setting.meaning) + " |\n";
+            in_table_cell(documented_default(setting)) + " | " + in_table_cell(setting.meaning) +
+            (setting.live ? " *live*" : "") + " |\n";
   }
   return page;
 }

@@ -21,6 +21,7 @@ struct Setting {
   std::string unit;
   std::string meaning;
   bool required = false;
+  bool live = false;  ///< a running daemon takes it over when it reads the configuration again
   std::function<Status(Config&, const Names&, const RawValue&)> set;
   std::function<std::string(const Config&, const Names&)> toml;  ///< its value; empty when it is not set
 };

@@ -218,7 +218,8 @@ void declare_rest(std::vector<Setting>& table) {
   declare_audit(table);
   SectionDeclarer<LogConfig> log(table, {"log"}, [](Config& c, const Names&) -> LogConfig& { return c.log; });
   log("level", &LogConfig::level, one_of({"trace", "debug", "info", "warn", "error"}), "",
-      "Least severe message that is logged (to stderr).");
+      "Least severe message that is logged (to stderr).")
+      .live = true;
   log("format", &LogConfig::format, one_of({"text", "json"}), "",
       "text for people, json for one JSON object per line.");
 }

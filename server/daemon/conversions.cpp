@@ -57,6 +57,8 @@ api::HttpServerSettings http_settings(const Config& config) {
   settings.address = config.server.address;
   settings.port = static_cast<std::uint16_t>(config.server.port);
   settings.max_connections = config.server.max_connections;
+  const auto& tls = config.server.tls;
+  settings.tls = {tls.certificate, tls.key, tls.key_password_file, tls.client_ca};
   settings.door.hosts = config.server.hosts;
   settings.door.rate_limit = config.server.rate_limit;
   settings.door.loopback_rate_limit = config.server.loopback_rate_limit;

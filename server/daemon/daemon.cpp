@@ -106,6 +106,7 @@ struct Daemon::Parts {
   std::unique_ptr<FeedThread> feed;
   api::Router router;
   std::unique_ptr<AuditLog> audit;
+  std::shared_ptr<api::Authenticator> authenticator;  // only where tokens are asked for
   std::unique_ptr<api::HttpServer> http;
   std::unique_ptr<ServiceWatch> service_watch;
 
@@ -189,8 +190,9 @@ struct Daemon::Parts {
     if (!config.server.tokens_file.empty()) {
       auto tokens = TokenStore::open(config.server.tokens_file, log_security);
       if (!tokens) return tokens.error();
-      settings.door.authenticator = *std::move(tokens);
-    } else if (!is_loopback(config.server.address)) {
+      authenticator = *std::move(tokens);
+      settings.door.authenticator = authenticator;
+    } else if (!is_loopback(config.server.address) && config.server.tls.client_ca.empty()) {
       log_security(
           "server.allow_unauthenticated: whoever reaches " + config.server.address + " may do everything",
           false);
@@ -200,9 +202,10 @@ struct Daemon::Parts {
     return Done{};
   }
 
-  Status make_http(const Config& config) {
+  Status make_http(const Config& config, api::Entrance entrance) {
     auto settings = http_settings(config);
     settings.max_connections = room_for(settings.max_connections);
+    settings.entrance = std::move(entrance);
     if (auto status = make_doors(config, settings); !status) return status;
     feed = std::make_unique<FeedThread>(*cell);
     router = api::make_routes(*cell, feed->hub(), *operations);
@@ -241,19 +244,18 @@ struct Daemon::Parts {
   }
 };
 
-Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, const std::string& version,
-                                              const std::string& configuration,
+Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, api::Entrance entrance,
+                                              const std::string& version, const std::string& configuration,
                                               const ServiceManager& manager) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::make_unique<Parts>()));
   auto& parts = *daemon->parts_;
-  if (auto status = check_exposure(config.server); !status) return status.error();
   if (auto status = check_sensors(config); !status) return status.error();
   parts.make_operations(config, version, configuration);
   if (auto status = parts.make_model(config); !status) return status.error();
   if (auto status = parts.open_store(config); !status) return status.error();
   if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
-  if (auto status = parts.make_http(config); !status) return status.error();
+  if (auto status = parts.make_http(config, std::move(entrance)); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();
   parts.watch_service(manager);
   return daemon;
@@ -271,6 +273,18 @@ void Daemon::stop() {
   parts_->http.reset();
   parts_->feed.reset();
   parts_->cell.reset();
+}
+
+Result<api::Entrance> Daemon::open(const Config& config) {
+  if (auto status = check_exposure(config.server); !status) return status.error();
+  return api::HttpServer::open(http_settings(config));
+}
+
+Status Daemon::apply(const Config& config) {
+  if (auto status = check_exposure(config.server); !status) return status;
+  auto settings = http_settings(config);
+  settings.door.authenticator = parts_->authenticator;
+  return parts_->http->apply(settings);
 }
 
 std::uint16_t Daemon::http_port() const { return parts_->http->port(); }

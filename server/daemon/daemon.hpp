@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "api/http/http_server.hpp"
 #include "core/base/result.hpp"
 #include "server/config/config.hpp"
 #include "server/operations/notify_socket.hpp"
@@ -27,10 +28,18 @@ class Daemon {
   /// Runs when it returns. Whether robot and sensors are there shows in the API: they may come and go at any
   /// time. `configuration`: the same as text, which is kept with every calibration. The error names the file,
   /// key or port at fault.
-  static Result<std::unique_ptr<Daemon>> start(const Config& config, const std::string& version,
-                                               const std::string& configuration,
+  static Result<std::unique_ptr<Daemon>> start(const Config& config, api::Entrance entrance,
+                                               const std::string& version, const std::string& configuration,
                                                const ServiceManager& manager = {});
   ~Daemon();
+
+  /// Takes the port and reads the key, which may need rights that the daemon gives up then (server.run_as).
+  /// The error names the file, key or port at fault.
+  static Result<api::Entrance> open(const Config& config);
+
+  /// Takes over the live keys of a configuration (with_live_keys()), and reads certificates again. With an
+  /// error nothing has changed.
+  Status apply(const Config& config);
 
   /// Ends everything in good order.
   void stop();

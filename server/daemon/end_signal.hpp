@@ -7,8 +7,8 @@
 
 namespace calibrd {
 
-/// SIGTERM and SIGINT as something to wait for. Make one before any thread is started: every thread inherits
-/// its mask.
+/// SIGTERM, SIGINT and SIGHUP (read the configuration again) as something to wait for. Make one before any
+/// thread is started: every thread inherits its mask.
 class EndSignal {
  public:
   EndSignal();

@@ -20,6 +20,9 @@ void start_logging(const LogConfig& config);
 /// The newest lines of the log, as they were written to stderr: see LogRing. Empty before start_logging().
 std::string newest_log_lines();
 
+/// From now on, at any time.
+void set_log_level(const std::string& level);
+
 /// Writes a log message as one line of JSON. The message is taken for UTF-8. It reads the marks of the thread
 /// it is called on, which must be the one that logs.
 std::unique_ptr<spdlog::formatter> json_line_formatter();

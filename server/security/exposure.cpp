@@ -11,8 +11,8 @@ bool is_loopback(const std::string& address) {
 }
 
 Status check_exposure(const ServerConfig& server) {
-  if (is_loopback(server.address) || !server.tokens_file.empty() || server.allow_unauthenticated)
-    return Done{};
+  const bool asks = !server.tokens_file.empty() || !server.tls.client_ca.empty();
+  if (is_loopback(server.address) || asks || server.allow_unauthenticated) return Done{};
   return Error{SecurityError::open_without_tokens, "server.address = \"" + server.address + "\""};
 }
 

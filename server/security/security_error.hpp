@@ -17,6 +17,8 @@ enum class SecurityError {
   no_such_token,
   no_randomness,
   open_without_tokens,
+  no_such_user,
+  cannot_become,
 };
 
 const std::error_category& security_category();

@@ -150,9 +150,9 @@ TEST(Doorkeeper, AnAnswerThatGoesOnEndsWhenItsTokenIsRevoked) {
   settings.authenticator = tokens;
   Doorkeeper door(settings);
   const auto request = with_token("Bearer x");
-  EXPECT_TRUE(door.still_admits(request, Scope::read));
+  EXPECT_TRUE(door.still_admits(request, Scope::read, {}));
   tokens->is_there = false;
-  EXPECT_FALSE(door.still_admits(request, Scope::read));
+  EXPECT_FALSE(door.still_admits(request, Scope::read, {}));
 }
 
 TEST(RateLimiter, ABucketFillsAgainAtItsRate) {
