@@ -44,14 +44,17 @@ using Starting = std::shared_future<Result<std::shared_ptr<Daemon>>>;
 
 /// Waits for the end; on the way there, reads the configuration again whenever that is asked for.
 int wait_for_end(const EndSignal& signals, const Starting& starting, const ConfigSources& sources,
-                 Config now) {
+                 const std::optional<NotifySocket>& socket, Config now) {
   for (;;) {
     const int number = signals.wait();
     if (number != SIGHUP) return number;
     if (starting.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
       spdlog::warn("SIGHUP: the daemon is still starting; send it again when it listens");
-    else if (starting.get())
+    else if (starting.get()) {
+      if (socket) socket->send(reloading_lines());
       reload(sources, **starting.get(), now);
+      if (socket) socket->send("READY=1");
+    }
   }
 }
 
@@ -83,7 +86,7 @@ int serve(const LoadedConfig& loaded, const ConfigSources& sources) {
     return std::shared_ptr<Daemon>(*std::move(daemon));
   };
   const Starting starting = std::async(std::launch::async, start).share();
-  const int number = wait_for_end(signals, starting, sources, config);
+  const int number = wait_for_end(signals, starting, sources, socket, config);
   if (socket) socket->send("STOPPING=1");
   EndSignal::end_within(kPatience);
   const auto& daemon = starting.get();

@@ -10,6 +10,7 @@ import io
 import json
 import os
 import re
+import signal
 import socket
 import subprocess
 import tarfile
@@ -174,6 +175,9 @@ class Operations(CellTest):
                 manager.silence()
             manager.wait("WATCHDOG=1")
             self.assertIn(f"thread {thread} does not go on", daemon.output())
+        daemon.process.send_signal(signal.SIGHUP)
+        self.assertIn("MONOTONIC_USEC=", manager.wait("RELOADING=1"))
+        manager.wait("READY=1")
         daemon.process.terminate()
         manager.wait("STOPPING=1")
         daemon.process.wait(10)
