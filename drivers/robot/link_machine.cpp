@@ -86,6 +86,14 @@ LinkSteps LinkMachine::on_tick(Clock::time_point now) {
   return finish(now);
 }
 
+LinkSteps LinkMachine::on_trouble(const std::string& what, Clock::time_point now) {
+  steps_.clear();
+  armed_.reset();  // the shell may never have heard of it
+  if (phase_ == Phase::stopped) return {};
+  lose(State::connecting, {RobotLinkError::out_of_resources, what}, now);
+  return finish(now);
+}
+
 LinkSteps LinkMachine::stop() {
   if (phase_ == Phase::stopped) return {};
   phase_ = Phase::stopped;

@@ -79,6 +79,9 @@ class LinkMachine {
   /// The peer closed (no error) or the connection broke.
   LinkSteps on_closed(const std::error_code& why, Clock::time_point now);
   LinkSteps on_tick(Clock::time_point now);
+  /// An event or a step of it has failed half-way, for want of memory say: whatever it has left undone, the
+  /// connection starts anew. `what`: the cause in words.
+  LinkSteps on_trouble(const std::string& what, Clock::time_point now);
   /// For good: every later event is ignored, nothing more is reported.
   LinkSteps stop();
 

@@ -6,6 +6,9 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
+#include <exception>
+#include <new>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -27,7 +30,7 @@ LinkShell::LinkShell(const asio::any_io_executor& executor, const std::string& h
 void LinkShell::start() {
   asio::post(socket_.get_executor(), [self = shared_from_this()] {
     const std::lock_guard lock(self->mutex_);
-    self->obey(self->machine_.start(Clock::now()));
+    self->carefully([&] { self->obey(self->machine_.start(Clock::now())); });
   });
 }
 
@@ -61,8 +64,31 @@ auto LinkShell::for_this_connection(Handler handler) {
           handler = std::move(handler)](auto&&... results) mutable {
     const std::lock_guard lock(self->mutex_);
     if (!self->stopped_ && connection == self->connection_)
-      handler(std::forward<decltype(results)>(results)...);
+      self->carefully([&] { handler(std::forward<decltype(results)>(results)...); });
   };
+}
+
+/// Completion handlers must not throw: the executor's thread would end, and the robot with it.
+template <class Work>
+void LinkShell::carefully(Work work) {
+  try {
+    work();
+  } catch (const std::exception& failure) {
+    start_over(failure.what());
+  }
+}
+
+void LinkShell::start_over(const char* what) {
+  constexpr int kAttempts = 20;
+  constexpr std::chrono::milliseconds kPause(10);  // stop() waits as long as all of them at most
+  for (int attempt = 1;; ++attempt) {
+    try {
+      return obey(machine_.on_trouble(what, Clock::now()));
+    } catch (const std::bad_alloc&) {
+      if (attempt == kAttempts) throw;  // nothing can be done here any more: whoever watches starts calibrd anew
+    }
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 void LinkShell::carry_out(link_step::Connect) {
@@ -147,7 +173,7 @@ void LinkShell::carry_out(const link_step::ArmTimer& timer) {
   timer_.async_wait([self = shared_from_this(), round = ++timer_round_](ErrorCode) {
     const std::lock_guard lock(self->mutex_);
     if (self->stopped_ || round != self->timer_round_) return;
-    self->obey(self->machine_.on_tick(Clock::now()));
+    self->carefully([&] { self->obey(self->machine_.on_tick(Clock::now())); });
   });
 }
 

@@ -47,6 +47,9 @@ class LinkShell : public std::enable_shared_from_this<LinkShell> {
 
   template <class Handler>
   auto for_this_connection(Handler handler);
+  template <class Work>
+  void carefully(Work work);
+  void start_over(const char* what);
   void wait_for_bytes();
   void read_what_is_there();
   bool read_once();

@@ -7,6 +7,8 @@
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/post.hpp>
 #include <cstring>
+#include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -26,6 +28,7 @@ Endpoints blocking_lookup(const std::string& host, std::uint16_t port) {
   addrinfo* found = nullptr;
   Endpoints endpoints;
   if (::getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0) return endpoints;
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
   for (const addrinfo* entry = found; entry; entry = entry->ai_next) {
     asio::ip::tcp::endpoint endpoint;
     if (entry->ai_addrlen > endpoint.capacity()) continue;
@@ -34,7 +37,6 @@ Endpoints blocking_lookup(const std::string& host, std::uint16_t port) {
     endpoint.port(port);
     endpoints.push_back(endpoint);
   }
-  ::freeaddrinfo(found);
   return endpoints;
 }
 
@@ -54,6 +56,16 @@ struct NameLookup::Shared : std::enable_shared_from_this<Shared> {
     if (!handler) return;
     asio::post(executor,
                [shared = shared_from_this(), endpoints = std::move(endpoints)] { shared->tell(endpoints); });
+  }
+  /// Must not throw, on a thread of its own: without memory for an answer there is none, and the caller's
+  /// patience ends.
+  void look_up(const std::string& host, std::uint16_t port) noexcept {
+    try {
+      answer(blocking_lookup(host, port));
+    } catch (const std::exception&) {
+      const std::lock_guard lock(mutex);
+      running = false;
+    }
   }
   void tell(const Endpoints& endpoints) {
     const Handler wanted = [this] {
@@ -80,9 +92,13 @@ void NameLookup::start(Handler handler) {
   boost::system::error_code not_numeric;
   const auto address = asio::ip::make_address(host_, not_numeric);
   if (!not_numeric) return shared_->answer({{address, port_}});
-  std::thread([shared = shared_, host = host_, port = port_] {
-    shared->answer(blocking_lookup(host, port));
-  }).detach();
+  try {
+    std::thread(&Shared::look_up, shared_, host_, port_).detach();
+  } catch (...) {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->running = false;  // the next start() tries again
+    throw;
+  }
 }
 
 void NameLookup::cancel() {

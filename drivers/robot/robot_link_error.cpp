@@ -57,6 +57,9 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
     {held_up,
      "this computer was too busy to read the robot for seconds; joints of unknown age were dropped, "
      "reconnecting. Give calibrd more processor time"},
+    {out_of_resources,
+     "this computer had no memory or no thread left for the link; reconnecting. Look for what uses them up, or "
+     "raise the limits of calibrd"},
 
     {joints_missing,
      "status arrives but no joint positions: the controller cannot read its encoders. Check its alarms and "

@@ -32,6 +32,7 @@ enum class RobotLinkError {
   evicted,
   silent,
   held_up,
+  out_of_resources,
   // Connected, but without joints
   joints_missing,
   only_other_groups,

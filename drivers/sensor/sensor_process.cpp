@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <new>
+#include <system_error>
 
 #include "drivers/sensor/child_process.hpp"
 #include "drivers/sensor/supervisor_machine.hpp"
@@ -56,7 +58,11 @@ Result<std::unique_ptr<SensorProcess>> SensorProcess::start(SensorProcessSetting
   if (!wake || !stop) return system_error("event descriptors");
   std::unique_ptr<SensorProcess> process(
       new SensorProcess(std::move(settings), std::move(wake), std::move(stop)));
-  process->thread_ = std::thread([self = process.get()] { self->supervise(); });
+  try {
+    process->thread_ = std::thread([self = process.get()] { self->supervise(); });
+  } catch (const std::system_error& failure) {
+    return sensor_error(SensorError::system_refused, std::string("thread (") + failure.what() + ")");
+  }
   return process;
 }
 
@@ -123,15 +129,26 @@ void SensorProcess::supervise() {
   // child's.
   auto now = Clock::now();
   while (!give_up_at || (!machine.is_finished() && Clock::now() < *give_up_at)) {
-    obey(machine, child, now);
-    wait(machine, child);
-    now = Clock::now();
-    observe(machine, child, now);
+    try {
+      obey(machine, child, now);
+      wait(machine, child);
+      now = Clock::now();
+      observe(machine, child, now);
+    } catch (const std::bad_alloc&) {
+      start_over(machine, child);
+    }
     if (!give_up_at && is_stop_requested()) {
       machine.stop();
       give_up_at = now + kLongestStop;
     }
   }
+}
+
+/// What was under way is not known any more; so the process is ended, and started anew after the usual pause. Takes no
+/// memory.
+void SensorProcess::start_over(SupervisorMachine& machine, std::optional<ChildProcess>& child) const {
+  child.reset();
+  machine.on_spawn_failed(sensor_error(SensorError::system_refused), Clock::now());
 }
 
 void SensorProcess::obey(SupervisorMachine& machine, std::optional<ChildProcess>& child,
@@ -157,12 +174,13 @@ void SensorProcess::spawn(SupervisorMachine& machine, std::optional<ChildProcess
   if (!memory) return machine.on_spawn_failed(memory.error(), Clock::now());
   auto ring = FrameRingReader::attach(memory->get(), geometry);
   if (!ring) return machine.on_spawn_failed(ring.error(), Clock::now());
+  auto reader = std::make_shared<FrameRingReader>(*std::move(ring));
   auto spawned = ChildProcess::spawn(settings_, memory->get(), wake_.get());
   if (!spawned) return machine.on_spawn_failed(spawned.error(), Clock::now());
   child.emplace(std::move(*spawned));
   machine.on_spawned(Clock::now());
   const std::lock_guard lock(mutex_);
-  ring_ = std::make_shared<FrameRingReader>(std::move(*ring));
+  ring_ = std::move(reader);
 }
 
 void SensorProcess::wait(const SupervisorMachine& machine, const std::optional<ChildProcess>& child) const {

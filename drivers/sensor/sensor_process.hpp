@@ -37,6 +37,7 @@ class SensorProcess : public DepthSource {
 
   // The supervising thread.
   void supervise();
+  void start_over(SupervisorMachine& machine, std::optional<ChildProcess>& child) const;
   void obey(SupervisorMachine& machine, std::optional<ChildProcess>& child, Clock::time_point now);
   void spawn(SupervisorMachine& machine, std::optional<ChildProcess>& child);
   void observe(SupervisorMachine& machine, std::optional<ChildProcess>& child, Clock::time_point now);

@@ -41,6 +41,21 @@ TEST_F(LinkMachineTest, BytesThatNeverEndAMessageAreSilence) {
   EXPECT_TRUE(asked_to<link_step::Close>());
 }
 
+TEST_F(LinkMachineTest, AnEventThatFailsHalfWayStartsTheConnectionAnew) {
+  start_and_connect();
+  for (int i = 0; i < 3; ++i) {
+    pass(10ms);
+    obey(machine_.on_trouble("bad_alloc", now_));
+    EXPECT_TRUE(asked_to<link_step::Close>());
+    // Asked for again, though a timer was asked for before: nobody knows whether the shell has heard of it.
+    EXPECT_TRUE(asked_to<link_step::ArmTimer>());
+    EXPECT_TRUE(reason_is(RobotLinkError::out_of_resources));
+  }
+  EXPECT_EQ(pause(), 200ms);
+  obey(machine_.stop());
+  EXPECT_TRUE(machine_.on_trouble("bad_alloc", now_).empty());
+}
+
 TEST_F(LinkMachineTest, BacksOffAfterRefusalsUpToTheCap) {
   obey(machine_.start(now_));
   for (const auto expected : {50ms, 100ms, 200ms, 400ms, 500ms, 500ms}) {
