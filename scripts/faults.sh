@@ -7,6 +7,7 @@
 #                                       cell, restarts it and checks what is stored
 #   scripts/faults.sh storage           power cuts, failing system calls and allocations, each in turn; full, read-only and
 #                                       damaged disks
+#   scripts/faults.sh links             every call and allocation of the links to controller and sensor failing, each in turn
 #   scripts/faults.sh disconnects [N [SEED [controller | sensor]]]
 #                                       cuts it off from controller and sensor, N times each (1000, half an hour), and measures how
 #                                       soon it has them again and what stays behind
@@ -31,6 +32,10 @@ case $what in
   clock)
     build all
     python3 -B tests/e2e/clock_test.py "$@"
+    ;;
+  links)
+    build test_robot_link_faults test_sensor_faults
+    ctest --test-dir build/release --output-on-failure -R '(RobotLink|Sensor)Calls'
     ;;
   storage)
     build all

@@ -84,6 +84,7 @@ struct Fault {
   int error;
   int most = 8;  ///< how many of its calls fail in turn, where a link makes more and more of them
 };
+void PrintTo(const Fault& fault, std::ostream* out) { *out << name_of(fault.call) << ' ' << fault.error; }
 
 /// False: there are not that many such calls.
 bool survives(const Fault& fault, int n) {

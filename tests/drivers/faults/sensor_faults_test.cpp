@@ -20,6 +20,7 @@ struct Fault {
   int error;
   int most = 6;
 };
+void PrintTo(const Fault& fault, std::ostream* out) { *out << name_of(fault.call) << ' ' << fault.error; }
 
 class SensorCalls : public SensorTest, public ::testing::WithParamInterface<Fault> {
  protected:
