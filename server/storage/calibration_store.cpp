@@ -125,6 +125,21 @@ Status CalibrationStore::insert_drift(const std::string& calibration_id) {
   return insert.status(StorageError::cannot_write);
 }
 
+/// Of the same sensor: all but the newest, and that of the current pose.
+Status CalibrationStore::drop_old_backgrounds(const std::string& calibration_id) {
+  constexpr int kKept = 20;  // kOldBackgroundsMayGo guards as many
+  Statement remove(
+      *database_,
+      "DELETE FROM backgrounds WHERE calibration_id IN (SELECT c.id FROM calibrations c "
+      "JOIN backgrounds b ON b.calibration_id = c.id "
+      "WHERE c.sensor_id = (SELECT sensor_id FROM calibrations WHERE id = ?) "
+      "ORDER BY c.number DESC LIMIT -1 OFFSET ?) AND calibration_id NOT IN "
+      "(SELECT calibration_id FROM activations "
+      "WHERE number IN (SELECT MAX(number) FROM activations GROUP BY sensor_id))");
+  remove.bind(calibration_id).bind(kKept).next();
+  return remove.status(StorageError::cannot_write);
+}
+
 Status CalibrationStore::add_background(const std::string& calibration_id,
                                         const std::vector<float>& depth_m) {
   return guarded([&] {
@@ -132,7 +147,8 @@ Status CalibrationStore::add_background(const std::string& calibration_id,
       Statement insert(*database_,
                        "INSERT OR IGNORE INTO backgrounds (calibration_id, depths) VALUES (?, ?)");
       insert.bind(calibration_id).bind(background_text(depth_m)).next();
-      return insert.status(StorageError::cannot_write);
+      if (auto inserted = insert.status(StorageError::cannot_write); !inserted) return inserted;
+      return drop_old_backgrounds(calibration_id);
     });
     if (status) save_current_of(calibration_id);
     return status;

@@ -94,6 +94,7 @@ class CalibrationStore {
   Status insert_end(const api::CalibrationReport& calibration);
   Status insert_activation(const api::CalibrationReport& calibration, const std::string& basis);
   Status insert_drift(const std::string& calibration_id);
+  Status drop_old_backgrounds(const std::string& calibration_id);
   Result<std::optional<api::CalibrationReport>> find_row(const std::string& id);
 
   Status begin();

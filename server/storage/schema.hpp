@@ -78,8 +78,18 @@ CREATE TRIGGER evidence_stays BEFORE UPDATE ON evidence BEGIN SELECT RAISE(ABORT
 CREATE TRIGGER evidence_remains BEFORE DELETE ON evidence BEGIN SELECT RAISE(ABORT, 'evidence is kept'); END;
 )sql";
 
+/// A megabyte each, and only of use to a pose that is chosen again: those with twenty newer ones may go.
+inline constexpr const char* kOldBackgroundsMayGo = R"sql(
+DROP TRIGGER backgrounds_remain;
+CREATE TRIGGER backgrounds_remain BEFORE DELETE ON backgrounds
+WHEN (SELECT COUNT(*) FROM calibrations old JOIN calibrations newer ON newer.sensor_id = old.sensor_id AND newer.number > old.number
+      JOIN backgrounds kept ON kept.calibration_id = newer.id WHERE old.id = OLD.calibration_id) < 20
+BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
+)sql";
+
 /// Steps from an empty file to today's schema. The file's user_version is how many it has taken; a change is
 /// one more step, and the steps before it stay as they are.
-inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds, kEvidence};
+inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds, kEvidence,
+                                         kOldBackgroundsMayGo};
 
 }  // namespace calibrd

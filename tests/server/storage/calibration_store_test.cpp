@@ -130,6 +130,20 @@ TEST_F(Store, BackgroundOutlivesARestartAndTheFirstStays) {
   EXPECT_EQ(run_raw("DELETE FROM backgrounds"), "backgrounds are kept");
 }
 
+TEST_F(Store, OfBackgroundsTheNewestAndThatOfTheCurrentPoseAreKept) {
+  const auto name = [](int i) { return "c" + std::to_string(i); };
+  const auto has = [&](const std::string& id) { return store_->background(id)->has_value(); };
+  for (int i = 0; i < 25; ++i) {
+    const auto calibration = add(name(i));
+    finish(calibration);
+    EXPECT_TRUE(store_->add_background(name(i), {1, 2, 3}));
+    if (i == 1) EXPECT_TRUE(store_->activate(calibration, ""));
+  }
+  for (int i = 0; i < 25; ++i) EXPECT_EQ(has(name(i)), i == 1 || i >= 5) << i;
+  EXPECT_EQ(store_->history({"kinect2", 50, ""})->calibrations.size(), 25U);
+  EXPECT_EQ(run_raw("DELETE FROM backgrounds WHERE calibration_id = 'c5'"), "backgrounds are kept");
+}
+
 TEST(BackgroundText, DamageIsNoBackground) {
   EXPECT_EQ(background_text({0.0001F, 0}), "00010000");
   for (const char* damaged : {"000", "00g0", "-001", "0x10"})
