@@ -19,6 +19,8 @@ readonly kLibraries=(
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev python3-jsonschema libfaketime)                          # tests
+readonly kPage=(nodejs npm) # a Node.js of one's own, 18 or newer, serves as well
+readonly kBrowser=chromium  # for the tests of the page; Ubuntu has it only as a snap
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
 readonly kLoad=(wrk nginx-light)
 readonly kBoostPrefix=.deps/boost
@@ -40,7 +42,23 @@ distribution() {
   )
 }
 
-packages() { printf '%s\n' "${kTools[@]}" "${kLibraries[@]}" "${extra[@]}"; }
+packages() {
+  printf '%s\n' "${kTools[@]}" "${kLibraries[@]}" "${extra[@]}"
+  has_node || printf '%s\n' "${kPage[@]}"
+  [ "$(distribution)" = ubuntu:24.04 ] || echo "$kBrowser"
+}
+
+has_node() { [ "$(node --version 2>/dev/null | sed 's/v\([0-9]*\).*/\1/')" -ge 18 ] 2>/dev/null && command -v npm >/dev/null; }
+
+# The page's packages, exactly those of the lock file; without running anything of theirs. npm writes down what it has
+# installed: as long as that is newer than the lock file, nothing is to be done.
+need_page_packages() { [ web/package-lock.json -nt web/node_modules/.package-lock.json ]; }
+
+install_page_packages() {
+  say "installing the page's packages into web/node_modules"
+  (cd web && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2) ||
+    say "npm could not: the daemon is built without its page"
+}
 
 missing_packages() {
   local installed
@@ -123,6 +141,7 @@ main() {
   if [ "${1:-}" = --check ]; then
     if need_private_boost "$os"; then missing+=("$kBoostPrefix"); fi
     if need_private_pcl; then missing+=("$kPclPrefix"); fi
+    if need_page_packages; then missing+=(web/node_modules); fi
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
@@ -130,6 +149,7 @@ main() {
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi
+  if need_page_packages; then install_page_packages; fi
 }
 
 main "$@"

@@ -55,6 +55,7 @@ class Session {
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
+  boost::asio::awaitable<std::string> next_of(BodyStream& stream);
   boost::asio::awaitable<void> write_stream(const Request& request, Response response);
   boost::asio::awaitable<void> end_with(Response response);
   boost::asio::awaitable<void> end_sending();

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // What a session writes.
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -19,7 +20,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::size_t kReadAtOnce = 4096;
-constexpr auto kAskAgainAfter = std::chrono::milliseconds(50);
 constexpr auto kDrainTime = std::chrono::seconds(1);
 constexpr std::size_t kMostForgotten = 4 * 1024 * 1024;
 
@@ -53,16 +53,24 @@ asio::awaitable<void> Session::write_stream(const Request& request, Response res
   co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
   asio::steady_timer pause(stream_.get_executor());
   while (!failure && !head && !context_.stopping && context_.door->still_admits(request, scope, peer_)) {
-    const std::string text = response.stream->next();
+    const std::string text = co_await next_of(*response.stream);
     if (!text.empty()) {
       stream_.expires_after(context_.settings.write_timeout);
       co_await asio::async_write(stream_, asio::buffer(text),
                                  asio::redirect_error(asio::use_awaitable, failure));
       continue;
     }
-    pause.expires_after(kAskAgainAfter);
+    if (response.stream->has_ended()) break;
+    pause.expires_after(response.stream->pause());
     co_await pause.async_wait(asio::use_awaitable);
   }
+}
+
+/// On a worker where it takes its time.
+asio::awaitable<std::string> Session::next_of(BodyStream& stream) {
+  if (!stream.is_slow()) co_return stream.next();
+  auto work = [&stream]() -> asio::awaitable<std::string> { co_return stream.next(); };
+  co_return co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
 }
 
 asio::awaitable<bool> Session::write(Response response, bool head, bool keep_alive) {

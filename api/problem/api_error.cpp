@@ -19,6 +19,7 @@ constexpr std::array kTable{
     Row{ApiError::no_such_route, {404, "not_found", "There is nothing at this path.", "Check the path against docs/api.md."}},
     Row{ApiError::method_not_allowed, {405, "method_not_allowed", "This path does not take this method.", "Use one of the methods in the Allow header."}},
     Row{ApiError::no_such_sensor, {404, "no_such_sensor", "No sensor has this id.", "Use an id of GET /api/v1/sensors."}},
+    Row{ApiError::no_such_link, {404, "no_such_link", "No link of the robot has this name.", "Use the name of a link of GET /api/v1/robot."}},
     Row{ApiError::no_such_calibration, {404, "no_such_calibration", "No calibration has this id.", "Use an id of GET /api/v1/sensors/{id}/calibrations."}},
     Row{ApiError::capture_not_kept, {404, "capture_not_kept", "The views of this calibration are not kept.", "Raise storage.captures_max_age or storage.captures_max_mb for those to come."}},
     Row{ApiError::bad_query, {400, "bad_query", "A query parameter cannot be used.", "Correct the parameter that is named."}},

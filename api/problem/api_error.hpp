@@ -50,6 +50,7 @@ enum class ApiError {
   posture_not_suggested,
   no_such_motion,
   no_such_motion_route,
+  no_such_link,
   storage_failed,
   capture_failed,
   header_too_large,

@@ -7,6 +7,7 @@
 
 #include "api/json/calibration_result_json.hpp"
 #include "api/json/calibration_result_object.hpp"
+#include "api/json/camera_json.hpp"
 #include "api/json/pose_json.hpp"
 #include "api/routes/names.hpp"
 
@@ -27,18 +28,6 @@ json::array numbers(const std::vector<double>& values) {
   json::array list;
   for (const double value : values) list.emplace_back(value);
   return list;
-}
-
-json::object camera_json(const CameraModel& camera) {
-  json::array distortion;
-  for (const double k : camera.distortion) distortion.emplace_back(k);
-  return {{"width", camera.width},
-          {"height", camera.height},
-          {"fx", camera.fx},
-          {"fy", camera.fy},
-          {"cx", camera.cx},
-          {"cy", camera.cy},
-          {"distortion", std::move(distortion)}};
 }
 
 json::value or_null(const std::optional<Seconds>& value) {
@@ -157,6 +146,18 @@ json::object robot_json(const RobotReport& robot) {
           {"joints", joints_json(robot)},
           {"controller", controller_json(robot.controller)},
           {"links", links_json(robot)}};
+}
+
+json::object live_joints_json(const RobotReport& robot) {
+  if (!robot.joints)
+    return {{"positions_rad", nullptr}, {"stamp_ns", nullptr}, {"age_s", nullptr}, {"stale", true},
+            {"frozen", false},          {"still", false}};
+  return {{"positions_rad", numbers(robot.joints->positions_rad)},
+          {"stamp_ns", robot.joints->stamp.time_since_epoch() / std::chrono::nanoseconds(1)},
+          {"age_s", robot.joints_age.count()},
+          {"stale", robot.joints_stale},
+          {"frozen", robot.joints_frozen},
+          {"still", robot.still}};
 }
 
 json::object calibration_json(const CalibrationReport& calibration, bool with_result) {

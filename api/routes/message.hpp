@@ -39,6 +39,12 @@ class BodyStream {
   virtual ~BodyStream() = default;
   /// What is to be written now; empty: nothing yet, ask again soon.
   virtual std::string next() = 0;
+  /// How soon is soon.
+  virtual std::chrono::milliseconds pause() const { return std::chrono::milliseconds(50); }
+  /// next() may compute or wait: it is called on a worker.
+  virtual bool is_slow() const { return false; }
+  /// Nothing more comes.
+  virtual bool has_ended() const { return false; }
 };
 
 struct Response {

@@ -24,7 +24,7 @@ bool matches(const Route& route, const std::vector<std::string>& segments, PathV
   if (route.segments.size() != segments.size()) return false;
   values.clear();
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (route.segments[i].front() == '{')
+    if (route.segments[i].starts_with('{'))
       values.push_back(segments[i]);
     else if (route.segments[i] != segments[i])
       return false;

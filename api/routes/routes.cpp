@@ -4,7 +4,8 @@
 
 namespace calibrd::api {
 
-Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations) {
+Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations,
+                   PageFiles page) {
   Router router;
   add_health_routes(router, service, operations);
   add_operations_routes(router, operations);
@@ -19,8 +20,11 @@ Router make_routes(CellService& service, const EventHub& events, const Operation
   add_motion_routes(router, service);
   add_several_sensors_routes(router, service);
   add_obstacle_routes(router, service);
+  add_frame_routes(router, service);
   add_event_routes(router, events);
+  add_session_routes(router);
   add_openapi_routes(router);
+  add_page_routes(router, std::make_shared<const PageFiles>(std::move(page)));
   return router;
 }
 

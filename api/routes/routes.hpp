@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
+
 #include "api/events/event_hub.hpp"
+#include "api/page/page_files.hpp"
 #include "api/routes/router.hpp"
 #include "api/service/cell_service.hpp"
 #include "api/service/operations_service.hpp"
@@ -9,8 +12,9 @@
 namespace calibrd::api {
 
 /// Every route of the HTTP interface (docs/api.md) over `service`, `events` and `operations`, which must
-/// outlive the router.
-Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations);
+/// outlive the router, and of the page.
+Router make_routes(CellService& service, const EventHub& events, const OperationsService& operations,
+                   PageFiles page = {});
 
 // The parts it is made of.
 void add_pose_routes(Router& router, CellService& service);
@@ -27,6 +31,9 @@ void add_recording_routes(Router& router, CellService& service);
 void add_health_routes(Router& router, CellService& service, const OperationsService& operations);
 void add_openapi_routes(Router& router);
 void add_operations_routes(Router& router, const OperationsService& operations);
+void add_frame_routes(Router& router, CellService& service);
 void add_event_routes(Router& router, const EventHub& events);
+void add_session_routes(Router& router);
+void add_page_routes(Router& router, std::shared_ptr<const PageFiles> files);
 
 }  // namespace calibrd::api

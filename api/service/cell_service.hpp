@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "api/service/cell_reports.hpp"
+#include "api/service/frame_reports.hpp"
 #include "api/service/motion_reports.hpp"
 #include "api/service/reports.hpp"
 #include "core/base/result.hpp"
+#include "core/robot/triangle_mesh.hpp"
 
 namespace calibrd::api {
 
@@ -30,6 +32,10 @@ class CellService {
   virtual Result<PoseReport> pose(std::string_view sensor_id) const = 0;    ///< quick
   virtual Result<DriftReport> drift(std::string_view sensor_id) const = 0;  ///< quick
   virtual RobotReport robot() const = 0;                                    ///< quick
+  /// The robot's model as it was loaded: its URDF. Quick.
+  virtual std::string robot_urdf() const = 0;
+  /// What of a link is seen, link frame, m; empty for a link without geometry.
+  virtual Result<TriangleMesh> link_surface(std::string_view link) const = 0;
 
   /// Starts a calibration, or finds the one an equal request with the same Idempotency-Key started.
   virtual Result<CalibrationReport> start_calibration(const CalibrationRequest& request) = 0;
@@ -51,6 +57,8 @@ class CellService {
   /// still.
   virtual Result<CaptureArchive> record_capture(const CaptureRequest& request) = 0;
   virtual Result<Cloud> cloud(const CloudRequest& request) const = 0;
+  /// Nothing: there is none newer than asked for.
+  virtual Result<std::optional<SensorFrame>> sensor_frame(const SensorFrameRequest& request) const = 0;
 
   /// Moves the robot; only where the configuration allows it, and nothing speaks against it.
   virtual Result<MotionReport> start_motion(const MotionRequest& request) = 0;

@@ -69,6 +69,13 @@ AuditSettings audit_settings(const Config& config) {
           static_cast<std::uint64_t>(config.audit.max_file_mb) * 1'000'000, config.audit.files};
 }
 
+/// Where the page lies: beside the program's folder, in a build as when installed.
+std::filesystem::path page_folder() {
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  return program.parent_path().parent_path() / "share/calibrd/web";
+}
+
 /// As many as were asked for, or as many as the system allows.
 int room_for(int connections) {
   const int room = make_room_for_connections(connections);
@@ -208,7 +215,7 @@ struct Daemon::Parts {
     settings.entrance = std::move(entrance);
     if (auto status = make_doors(config, settings); !status) return status;
     feed = std::make_unique<FeedThread>(*cell);
-    router = api::make_routes(*cell, feed->hub(), *operations);
+    router = api::make_routes(*cell, feed->hub(), *operations, api::PageFiles::read(page_folder()));
     auto& pulse = operations->pulse();
     pulse.add("http", operations->http_watch().network_thread);
     pulse.add("robot link", link->heartbeat());

@@ -4,6 +4,7 @@
 
 #include "api/problem/api_error.hpp"
 #include "server/live_cell/sound_sighting.hpp"
+#include "server/live_cell/used_pose.hpp"
 
 namespace calibrd {
 namespace {
@@ -22,21 +23,6 @@ Eigen::Vector3f point_at(const CameraModel& camera, int x, int y, double depth_m
 void move_to_base(Cloud& cloud, const Pose& T_base_sensor, const std::string& base_frame) {
   cloud.frame = base_frame;
   for (auto& point : cloud.points) point = (T_base_sensor * point.cast<double>()).cast<float>();
-}
-
-/// The pose a cloud is made with, and what is known of the depth's bias.
-struct UsedPose {
-  Pose T_base_sensor;
-  DepthCorrection correction;
-  bool valid = false;
-};
-
-std::optional<UsedPose> pose_to_use(const LiveSensor& sensor, const std::optional<Pose>& guess) {
-  const auto pose = sensor.pose();
-  if (pose.known)
-    return UsedPose{*pose.known->result.T_base_sensor, pose.known->result.depth_correction, pose.valid};
-  if (guess) return UsedPose{*guess, {}, false};
-  return std::nullopt;
 }
 
 }  // namespace

@@ -100,6 +100,18 @@ void Healer::on_choice(const std::string& sensor_id) {
   if (const auto found = patients_.find(sensor_id); found != patients_.end()) found->second.wants_all = false;
 }
 
+bool Healer::decline(const std::string& calibration_id) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [sensor_id, patient] : patients_) {
+    if (patient.candidate.empty() || patient.candidate != calibration_id) continue;
+    patient.candidate.clear();
+    patient.due = Clock::now() + pause_after(patient.attempts);
+    changed_.notify_all();
+    return true;
+  }
+  return false;
+}
+
 bool Healer::tells_too_little(const Patient& patient, const api::CalibrationReport& calibration) const {
   const auto& result = calibration.result;
   const bool was_quick = patient.attempts >= 1 && patient.attempts <= kQuickAttempts;
@@ -151,7 +163,8 @@ void Healer::run() {
         wake = std::min(wake, Clock::now() + kCandidateLook);
         continue;
       }
-      if (!patient.candidate.empty()) plan(patient, Clock::now());  // it has moved while somebody thought it over
+      if (!patient.candidate.empty())
+        plan(patient, Clock::now());  // it has moved while somebody thought it over
       if (patient.due <= Clock::now()) next = id;
       wake = std::min(wake, patient.due);
     }

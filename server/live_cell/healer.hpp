@@ -54,6 +54,10 @@ class Healer {
   /// Somebody has chosen another pose for the sensor: it is not made better unasked.
   void on_choice(const std::string& sensor_id);
 
+  /// Somebody does not want what waits to be activated: it is sought again after a pause. False: it is no
+  /// candidate.
+  bool decline(const std::string& calibration_id);
+
   HealingMode mode() const { return settings_.mode; }
   /// Id of a calibration of the sensor that waits to be activated; empty: none, or it has moved since.
   std::string candidate(const std::string& sensor_id) const;

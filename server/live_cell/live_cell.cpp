@@ -2,12 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/live_cell/live_cell.hpp"
 
+#include <fstream>
+#include <iterator>
+
 #include "api/problem/api_error.hpp"
 #include "server/live_cell/pose_basis.hpp"
 
 namespace calibrd {
 
 using api::ApiError;
+namespace {
+
+std::string file_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
 
 LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const VirtualCell& virtual_cell,
                    JointMapping mapping, CalibrationStore& store, Estimator estimator, CellLog log)
@@ -16,10 +27,12 @@ LiveCell::LiveCell(LiveCellSettings settings, const RobotModel& model, const Vir
       estimator_(std::move(estimator)),
       log_(std::move(log)),
       robot_basis_(robot_basis(settings_.urdf, model, mapping)),
+      robot_urdf_(file_text(settings_.urdf)),
       robot_(model, std::move(mapping), settings_.gate, settings_.joint_latency, settings_.controller_frame),
       motions_(settings_.motion, robot_, log_.on_motion),
       virtual_cell_(virtual_cell),
       clouds_(virtual_cell, robot_),
+      frames_(virtual_cell),
       cloud_merger_(virtual_cell),
       obstacle_watch_(virtual_cell),
       jobs_(
@@ -224,6 +237,7 @@ Result<api::CalibrationReport> LiveCell::start_calibration(const api::Calibratio
 }
 
 Result<api::CalibrationReport> LiveCell::cancel_calibration(std::string_view id) {
+  if (healer_.decline(std::string(id))) return calibration(id);
   return jobs_.cancel(std::string(id));
 }
 

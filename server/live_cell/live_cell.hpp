@@ -12,6 +12,7 @@
 #include "server/live_cell/calibration_jobs.hpp"
 #include "server/live_cell/cloud_maker.hpp"
 #include "server/live_cell/cloud_merger.hpp"
+#include "server/live_cell/frame_maker.hpp"
 #include "server/live_cell/healer.hpp"
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/live_sensor.hpp"
@@ -108,6 +109,9 @@ class LiveCell : public api::CellService {
   Result<api::CaptureArchive> calibration_capture(std::string_view id) const override;
   Result<api::CaptureArchive> record_capture(const api::CaptureRequest& request) override;
   Result<api::Cloud> cloud(const api::CloudRequest& request) const override;
+  Result<std::optional<api::SensorFrame>> sensor_frame(const api::SensorFrameRequest& request) const override;
+  std::string robot_urdf() const override { return robot_urdf_; }
+  Result<TriangleMesh> link_surface(std::string_view link) const override;
   Result<api::MotionReport> start_motion(const api::MotionRequest& request) override {
     return motions_.start(request);
   }
@@ -155,10 +159,12 @@ class LiveCell : public api::CellService {
   const CellLog log_;
   std::atomic<bool> is_stopping_{false};
   const std::string robot_basis_;
+  const std::string robot_urdf_;  // as it was when the model was loaded
   LiveRobot robot_;
   mutable RobotMotions motions_;    // hears of every posture that is suggested
   const VirtualCell virtual_cell_;  // copied by who places the robot
   mutable CloudMaker clouds_;
+  mutable FrameMaker frames_;
   mutable CloudMerger cloud_merger_;
   mutable ObstacleWatch obstacle_watch_;
   std::map<std::string, std::unique_ptr<Entry>, std::less<>> entries_;  // fixed once started

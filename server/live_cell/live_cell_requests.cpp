@@ -93,4 +93,16 @@ Result<api::Cloud> LiveCell::cloud(const api::CloudRequest& request) const {
   return clouds_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
 }
 
+Result<std::optional<api::SensorFrame>> LiveCell::sensor_frame(const api::SensorFrameRequest& request) const {
+  const auto entry = find(request.sensor_id);
+  if (!entry) return entry.error();
+  return frames_.make(request, *(*entry)->sensor, (*entry)->setup.guess_T_base_sensor);
+}
+
+Result<TriangleMesh> LiveCell::link_surface(std::string_view link) const {
+  const auto index = robot_.model().find_link(link);
+  if (!index) return fail(ApiError::no_such_link, std::string(link));
+  return robot_.model().links()[static_cast<std::size_t>(*index)].surface;
+}
+
 }  // namespace calibrd

@@ -19,6 +19,8 @@ class FakeCell : public CellService {
   std::string capture_of_calibration;
   SensorReport sensor_report;
   Cloud cloud_report;
+  SensorFrame frame_report;
+  mutable SensorFrameRequest last_frame;
   std::function<Result<CalibrationReport>(const CalibrationRequest&)> on_start;
   std::function<Result<CaptureArchive>(const CaptureRequest&)> on_capture;
   CalibrationReport calibration_report;
@@ -117,6 +119,16 @@ class FakeCell : public CellService {
   }
   Result<Cloud> cloud(const CloudRequest& request) const override {
     return of_sensor(request.sensor_id, cloud_report);
+  }
+  Result<std::optional<SensorFrame>> sensor_frame(const SensorFrameRequest& request) const override {
+    last_frame = request;
+    if (request.newer_than && frame_report.stamp <= *request.newer_than) return std::optional<SensorFrame>();
+    return of_sensor(request.sensor_id, std::optional(frame_report));
+  }
+  std::string robot_urdf() const override { return "<robot name=\"fake\"/>"; }
+  Result<TriangleMesh> link_surface(std::string_view link) const override {
+    if (link != "link_1") return fail(ApiError::no_such_link, std::string(link));
+    return TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   }
   Result<ObstaclesReport> obstacles(const std::string& sensor_id) const override {
     return sensor_id.empty() ? obstacles_report : of_sensor(sensor_id, obstacles_report);

@@ -20,7 +20,7 @@ SCOPES = ("open", "read", "calibrate", "admin")
 
 # Every route and the least scope that may use it.
 ROUTES = [
-    ("GET", "/livez", OPEN), ("GET", "/readyz", OPEN), ("GET", "/openapi.json", OPEN), ("GET", "/docs", OPEN),
+    ("GET", "/livez", OPEN), ("GET", "/readyz", OPEN), ("GET", "/openapi.json", OPEN), ("GET", "/docs", OPEN), ("GET", "/", OPEN), ("GET", "/assets/none", OPEN),
     ("GET", "/docs/docs.js", OPEN), ("GET", "/docs/docs.css", OPEN), ("GET", "/api/v1/calibrations/none/diff/none", READ), ("GET", "/readyz?verbose", READ), ("GET", "/nowhere", READ),
     ("PUT", "/livez", READ), ("OPTIONS", "/api/v1/cell", READ), ("HEAD", "/api/v1/cell", READ),
     ("GET", f"/api/v1/sensors/{SENSOR}/pose", READ), ("GET", "/api/v1/sensors", READ), ("GET", f"/api/v1/sensors/{SENSOR}", READ),
@@ -29,6 +29,8 @@ ROUTES = [
     ("GET", "/api/v1/cell/cloud", READ), ("GET", f"/api/v1/sensors/{SENSOR}/clouds/measured", READ),
     ("GET", f"/api/v1/sensors/{SENSOR}/clouds/virtual", READ), ("GET", f"/api/v1/sensors/{SENSOR}/clouds/residual", READ),
     ("GET", f"/api/v1/sensors/{SENSOR}/next-posture", READ), ("GET", f"/api/v1/sensors/{SENSOR}/calibrations", READ),
+    ("GET", "/api/v1/session", READ), ("GET", f"/api/v1/sensors/{SENSOR}/frames", READ), ("GET", "/api/v1/robot/joints", READ),
+    ("GET", "/api/v1/robot/urdf", READ), ("GET", "/api/v1/robot/links/none/mesh", READ),
     ("GET", "/metrics", READ), ("GET", "/api/v1/calibrations/none", READ), ("GET", "/api/v1/calibrations/none/capture", READ),
     ("GET", "/api/v1/robot/motions", READ), ("GET", "/api/v1/robot/motions/none", READ),
     ("POST", f"/api/v1/sensors/{SENSOR}/calibrations", CALIBRATE), ("POST", "/api/v1/cell/calibrations", CALIBRATE),
@@ -49,7 +51,7 @@ def ask(port: int, method: str, path: str, token: str = "", address: str = "127.
     with contextlib.closing(connection):
         connection.request(method, path, body or None, sent)
         response = connection.getresponse()
-        if response.headers.get_content_type() == "text/event-stream":
+        if response.length is None:  # it has no end
             response.length = 1
         return Answer(response)
 

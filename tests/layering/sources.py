@@ -14,7 +14,7 @@ from typing import Iterator, NamedTuple
 
 FOLDERS = ("core", "drivers", "api", "server", "web", "config", "tests", "cmake", "scripts", "docker", ".ci")
 CPP = {".cpp", ".hpp", ".h"}
-SOURCES = CPP | {".py", ".sh"}
+SOURCES = CPP | {".py", ".sh", ".ts", ".mjs", ".css"}
 MAX_FILE_LINES = 300
 MAX_FUNCTION_LINES = 40
 HEADER = ("SPDX-FileCopyrightText: The calibrd authors", "SPDX-License-Identifier: Apache-2.0")

@@ -1,0 +1,3 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+declare module "*.css";

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+import { ApiProblem, type Client } from "../api/client";
+import { readEvents, type ServerEvent } from "../api/sse";
+import type { Calibration, Cell, Drift, Joints, Pose, Session } from "../api/types";
+import type { CellState, SensorState } from "./state";
+
+/** The joints come 30 times a second, robot or no robot: a daemon that is silent for so long is taken for lost. */
+const SILENCE_MS = 1200;
+const RETRY_MS = 500;
+/** Ages, checks and the drift statistic change without an event. */
+const REFRESH_MS = 1000;
+
+/** Keeps the state of the page in step with the daemon, and says when it cannot. */
+export class Connection {
+  private lastEventId = "";
+  private lastSign = 0;
+  private wakeUp: () => void = () => undefined;
+  private readonly refreshing = new Map<string, Promise<void>>();
+
+  constructor(
+    private readonly client: Client,
+    private readonly state: CellState,
+  ) {
+    client.onTokenWanted = (problem) => {
+      state.session.value = null;
+      state.connection.value = { kind: "token", reason: problem.code === "token_unknown" ? problem.message : "" };
+    };
+    document.addEventListener("visibilitychange", () => this.wakeUp());
+  }
+
+  /** Never returns. */
+  async run(): Promise<never> {
+    for (;;) {
+      try {
+        await this.connectOnce();
+      } catch (failure) {
+        if (!(failure instanceof ApiProblem && failure.status === 401)) this.noteLoss();
+      }
+      const isToken = this.state.connection.value.kind === "token";
+      await this.pause(isToken || document.hidden ? null : RETRY_MS);
+    }
+  }
+
+  /** A token has been entered: try again. */
+  retry(): void {
+    this.wakeUp();
+  }
+
+  private pause(milliseconds: number | null): Promise<void> {
+    return new Promise((resolve) => {
+      this.wakeUp = resolve;
+      if (milliseconds !== null) setTimeout(resolve, milliseconds);
+    });
+  }
+
+  private noteLoss(): void {
+    const known = this.state.connection.value;
+    if (known.kind === "token" || document.hidden) return;
+    if (known.kind !== "lost") this.state.connection.value = { kind: "lost", since: Date.now() };
+  }
+
+  /** Returns, or throws, when the connection has ended. A tab that nobody sees holds none. */
+  private async connectOnce(): Promise<void> {
+    if (document.hidden) return;
+    const ending = new AbortController();
+    this.state.session.value = await this.client.get<Session>("/api/v1/session", AbortSignal.timeout(SILENCE_MS));
+    await this.refreshAll(AbortSignal.timeout(5 * SILENCE_MS));
+    this.lastSign = performance.now();
+    this.state.connection.value = { kind: "live" };
+    const watch = setInterval(() => this.watch(ending), 100);
+    const refresh = setInterval(() => void this.refreshAll(ending.signal).catch(() => undefined), REFRESH_MS);
+    try {
+      await Promise.race([this.followEvents(ending.signal), this.followJoints(ending.signal)]);
+    } finally {
+      ending.abort();
+      clearInterval(watch);
+      clearInterval(refresh);
+      if (!document.hidden) this.noteLoss();
+    }
+  }
+
+  private watch(ending: AbortController): void {
+    if (document.hidden || performance.now() - this.lastSign > SILENCE_MS) ending.abort();
+  }
+
+  private followEvents(signal: AbortSignal): Promise<void> {
+    return readEvents(this.client, "/api/v1/events", {
+      lastId: this.lastEventId,
+      signal,
+      onSign: () => undefined,
+      onEvent: (event) => this.take(event, signal),
+    });
+  }
+
+  private followJoints(signal: AbortSignal): Promise<void> {
+    return readEvents(this.client, "/api/v1/robot/joints", {
+      signal,
+      onSign: () => (this.lastSign = performance.now()),
+      onEvent: (event) => (this.state.joints.value = JSON.parse(event.data) as Joints),
+    });
+  }
+
+  /** An event tells that something has changed, not what to trust: that is asked for. */
+  private take(event: ServerEvent, signal: AbortSignal): void {
+    this.lastEventId = event.id || this.lastEventId;
+    if (event.type === "reset") return;
+    const about = JSON.parse(event.data) as { sensor?: string; status?: string };
+    if (about.sensor) void this.refreshSensor(about.sensor, signal).catch(() => undefined);
+    const hasEnded = event.type === "calibration" && about.status !== "collecting" && about.status !== "running";
+    if (hasEnded || event.type === "pose") this.state.historyVersion.value += 1;
+  }
+
+  private async refreshAll(signal: AbortSignal): Promise<void> {
+    const cell = await this.client.get<Cell>("/api/v1/cell", signal);
+    await Promise.all(cell.sensors.map((sensor) => this.refreshSensor(sensor.id, signal)));
+    this.state.cell.value = cell;
+    if (!cell.sensors.some((sensor) => sensor.id === this.state.chosen.value))
+      this.state.chosen.value = cell.sensors[0]?.id ?? "";
+  }
+
+  /** One at a time for each sensor: answers that overtake each other would show the past. */
+  private refreshSensor(id: string, signal: AbortSignal): Promise<void> {
+    const before = this.refreshing.get(id) ?? Promise.resolve();
+    const mine = before.catch(() => undefined).then(() => this.fetchSensor(id, signal));
+    this.refreshing.set(id, mine);
+    return mine;
+  }
+
+  private async fetchSensor(id: string, signal: AbortSignal): Promise<void> {
+    const path = `/api/v1/sensors/${encodeURIComponent(id)}`;
+    const [pose, drift] = await Promise.all([
+      this.fetchPose(`${path}/pose`, signal),
+      this.client.get<Drift>(`${path}/drift`, signal),
+    ]);
+    const job = pose.job ? await this.client.get<Calibration>(`/api/v1/calibrations/${pose.job}`, signal) : null;
+    const entry: SensorState = { pose, drift, job, heardAt: performance.now() };
+    this.state.sensors.value = new Map(this.state.sensors.value).set(id, entry);
+  }
+
+  private async fetchPose(path: string, signal: AbortSignal): Promise<Pose> {
+    const response = await this.client.fetch(path, { signal });
+    const pose = (await response.json()) as Pose;
+    pose.calibrated_age_s = numberOf(response.headers.get("Calibrd-Calibrated-Age-S"));
+    pose.passed_check_age_s = numberOf(response.headers.get("Calibrd-Passed-Check-Age-S"));
+    return pose;
+  }
+}
+
+function numberOf(header: string | null): number | null {
+  return header === null ? null : Number(header);
+}

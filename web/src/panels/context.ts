@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+import { type Client, explain } from "../api/client";
+import type { NextPosture } from "../api/types";
+import type { Calibrations } from "../live/calibrations";
+import type { FrameFeed } from "../live/frame_feed";
+import type { CellState } from "../live/state";
+import type { Notices } from "../ui/dialog";
+import type { Signal } from "../ui/signal";
+
+/** What every panel has at hand. */
+export interface Context {
+  client: Client;
+  state: CellState;
+  frames: FrameFeed;
+  calibrations: Calibrations;
+  notices: Notices;
+  /** Where the robot should go, drawn as a ghost; null: nowhere. */
+  suggestion: Signal<NextPosture | null>;
+  /** Colours of links by what a calibration says of them; empty: none. */
+  heat: Signal<ReadonlyMap<string, string>>;
+}
+
+/** Does what a button is for; while it does, the button cannot be pressed again. */
+export async function perform(context: Context, button: HTMLButtonElement | null, action: () => Promise<void>): Promise<void> {
+  if (button) button.disabled = true;
+  try {
+    await action();
+  } catch (failure) {
+    context.notices.tell(explain(failure), true);
+  } finally {
+    if (button) button.disabled = false;
+  }
+}
+
+export function sensorPath(context: Context): string {
+  return `/api/v1/sensors/${encodeURIComponent(context.state.chosen.value)}`;
+}

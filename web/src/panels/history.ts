@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+import { explain } from "../api/client";
+import type { Calibration, CalibrationDiff } from "../api/types";
+import { h } from "../ui/dom";
+import { mm, mrad, percent, when } from "../ui/format";
+import { activate } from "./actions";
+import { type Context, perform } from "./context";
+import { ErrorCharts } from "./error_charts";
+import { heatOf, type HeatKind } from "./heat";
+
+const SHOWN = 20;
+
+/** Every calibration of the chosen sensor, newest first: how it went, how it differs, back to it. */
+export class HistoryPanel {
+  private readonly rows = h("tbody", { "data-test": "history" });
+  private readonly diff = h("div", { class: "diff", "data-test": "diff" });
+  private readonly charts = new ErrorCharts();
+  private readonly compared: string[] = [];
+  readonly element: HTMLElement;
+
+  constructor(private readonly context: Context) {
+    const columns = ["", "Calibration", "Verdict", "σ position", "σ rotation", "Residual", "Coverage", ""];
+    const head = h("thead", {}, h("tr", {}, ...columns.map((title, at) => h("th", { scope: "col" }, title || h("span", { class: "unseen" }, at === 0 ? "compare" : "actions")))));
+    this.element = h(
+      "section",
+      {},
+      h("p", { class: "hint" }, "Tick two to compare them."),
+      h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Calibrations" }, h("table", { class: "history" }, head, this.rows)),
+      this.diff,
+      this.charts.element,
+    );
+    const { state } = context;
+    for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
+  }
+
+  resize(): void {
+    this.charts.resize();
+  }
+
+  private async refresh(): Promise<void> {
+    const { state, calibrations, notices } = this.context;
+    if (!state.isLive || !state.chosen.value) return;
+    try {
+      const history = await calibrations.history(state.chosen.value, SHOWN);
+      this.rows.replaceChildren(...history.map((calibration) => this.row(calibration)));
+      this.charts.show(history);
+    } catch (failure) {
+      if (state.isLive) notices.tell(explain(failure), true);
+    }
+  }
+
+  private row(calibration: Calibration): HTMLElement {
+    const { id, result } = calibration;
+    const choose = h("input", { type: "checkbox", "aria-label": `Compare ${id}`, checked: this.compared.includes(id), disabled: !result?.T_base_sensor });
+    choose.addEventListener("change", () => void this.choose(id, choose));
+    const why = [calibration.message ?? "", ...(result?.reasons ?? []).map((reason) => reason.text)].filter(Boolean).join(" ");
+    return h(
+      "tr",
+      { "data-id": id, "data-current": String(calibration.current), title: why },
+      h("td", {}, choose),
+      h("td", {}, h("div", {}, when(calibration.created_at)), h("small", {}, id)),
+      h("td", { class: `verdict ${calibration.verdict ?? ""}` }, calibration.verdict ?? calibration.status, calibration.current ? h("strong", {}, " · served") : null),
+      h("td", {}, mm(result?.sigma_position_m)),
+      h("td", {}, mrad(result?.sigma_rotation_rad)),
+      h("td", {}, mm(result?.residual_rms_m)),
+      h("td", {}, percent(result?.coverage)),
+      h("td", {}, ...this.buttons(calibration)),
+    );
+  }
+
+  private buttons(calibration: Calibration): HTMLElement[] {
+    const { result } = calibration;
+    const heat = (kind: HeatKind): HTMLElement =>
+      h("button", { class: "small", "data-test": `heat-${kind}`, click: () => (this.context.heat.value = heatOf(this.context, kind, result ?? null)) }, kind);
+    const buttons = result?.links?.length ? [heat("coverage"), heat("residual")] : [];
+    if (calibration.verdict === "accepted" && !calibration.current && this.context.state.may("calibrate")) {
+      const back: HTMLButtonElement = h("button", { class: "small", "data-test": "rollback", click: () => void perform(this.context, back, () => activate(this.context, calibration.id)) }, "Serve…");
+      buttons.push(back);
+    }
+    return buttons;
+  }
+
+  /** The two that were ticked last. */
+  private async choose(id: string, box: HTMLInputElement): Promise<void> {
+    const at = this.compared.indexOf(id);
+    if (at >= 0) this.compared.splice(at, 1);
+    if (box.checked) this.compared.push(id);
+    while (this.compared.length > 2) this.untick(this.compared.shift() ?? "");
+    const [first, second] = this.compared;
+    if (!first || !second) return this.diff.replaceChildren();
+    await perform(this.context, null, async () => {
+      const diff = await this.context.client.get<CalibrationDiff>(`/api/v1/calibrations/${first}/diff/${second}`);
+      this.diff.replaceChildren(...describe(diff));
+    });
+  }
+
+  private untick(id: string): void {
+    const box = this.rows.querySelector<HTMLInputElement>(`tr[data-id="${id}"] input`);
+    if (box) box.checked = false;
+  }
+}
+
+function describe(diff: CalibrationDiff): HTMLElement[] {
+  const numbers = (values: number[]): string => values.map((value) => value.toFixed(2)).join(", ");
+  const points = diff.workspace.map((point) => h("li", {}, `${point.name}: ${point.distance_mm.toFixed(2)} mm (${numbers(point.displacement_mm)})`));
+  return [
+    h("h3", {}, `From ${diff.a} to ${diff.b}`),
+    h("p", {}, `Position ${diff.distance_mm.toFixed(2)} mm (x, y, z: ${numbers(diff.translation_mm)}), rotation ${diff.angle_mrad.toFixed(2)} mrad (about x, y, z: ${numbers(diff.rotation_mrad)}), axes of the base frame.`),
+    ...(points.length ? [h("p", {}, "What that means where the robot works:"), h("ul", {}, ...points)] : []),
+  ];
+}

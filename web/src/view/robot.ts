@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+import { Color, Group, Matrix4, Mesh, MeshLambertMaterial } from "three";
+import { STLLoader } from "three/addons/loaders/STLLoader.js";
+import URDFLoader, { type URDFRobot } from "urdf-loader";
+import type { Client } from "../api/client";
+
+const METAL = "#b9c2ca";
+const GHOST = "#35c08a";
+
+/** The robot as the daemon has it: its URDF, and of each link the surface that calibrd compares with. */
+export class RobotView {
+  /** In the base frame. */
+  readonly group = new Group();
+  private constructor(
+    private readonly robot: URDFRobot,
+    private readonly jointNames: readonly string[],
+    private readonly meshes: ReadonlyMap<string, Mesh>,
+  ) {
+    this.group.add(robot);
+  }
+
+  static async load(client: Client, base: string, jointNames: readonly string[]): Promise<RobotView> {
+    const loader = new URDFLoader();
+    loader.parseVisual = false; // the daemon's surfaces come instead: nothing of the URDF's paths is fetched
+    loader.parseCollision = false;
+    const robot = loader.parse(await (await client.fetch("/api/v1/robot/urdf")).text());
+    const meshes = new Map<string, Mesh>();
+    await Promise.all(Object.keys(robot.links).map((name) => addSurface(client, robot, name, meshes)));
+    robot.updateMatrixWorld(true);
+    const T_root_base = robot.links[base]?.matrixWorld ?? new Matrix4();
+    const view = new RobotView(robot, jointNames, meshes);
+    view.group.applyMatrix4(T_root_base.clone().invert());
+    return view;
+  }
+
+  setJoints(positions: readonly number[]): void {
+    this.jointNames.forEach((name, index) => this.robot.setJointValue(name, positions[index] ?? 0));
+  }
+
+  /** Of each link that is named; the others are grey. An empty map: all of them are metal. */
+  paint(colours: ReadonlyMap<string, string>): void {
+    for (const [name, mesh] of this.meshes)
+      (mesh.material as MeshLambertMaterial).color = new Color(colours.get(name) ?? (colours.size ? "#59626a" : METAL));
+  }
+
+  /** Old joints are shown as what they are. */
+  setStale(isStale: boolean): void {
+    this.setOpacity(isStale ? 0.35 : 1);
+  }
+
+  /** A second one, to show where the robot could be. */
+  ghost(): RobotView {
+    const robot = this.robot.clone() as URDFRobot;
+    const meshes = new Map<string, Mesh>();
+    for (const name of this.meshes.keys()) {
+      const mesh = robot.links[name]?.children.find((child): child is Mesh => child instanceof Mesh);
+      if (!mesh) continue;
+      mesh.material = new MeshLambertMaterial({ color: GHOST });
+      meshes.set(name, mesh);
+    }
+    const view = new RobotView(robot, this.jointNames, meshes);
+    view.group.applyMatrix4(this.group.matrix);
+    view.setOpacity(0.3);
+    return view;
+  }
+
+  private setOpacity(opacity: number): void {
+    for (const mesh of this.meshes.values()) {
+      const material = mesh.material as MeshLambertMaterial;
+      material.transparent = opacity < 1;
+      material.opacity = opacity;
+      material.depthWrite = opacity === 1;
+      material.needsUpdate = true;
+    }
+  }
+}
+
+async function addSurface(client: Client, robot: URDFRobot, name: string, meshes: Map<string, Mesh>): Promise<void> {
+  const response = await client.fetch(`/api/v1/robot/links/${encodeURIComponent(name)}/mesh`);
+  const geometry = new STLLoader().parse(await response.arrayBuffer());
+  if (geometry.getAttribute("position").count === 0) return;
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: METAL }));
+  robot.links[name]?.add(mesh);
+  meshes.set(name, mesh);
+}

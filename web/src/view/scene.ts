@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+import { AmbientLight, AxesHelper, Box3, Color, DirectionalLight, GridHelper, Object3D, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+/** The 3D picture: base frame, z up, metres. Drawn only when something has changed. */
+export class CellScene {
+  readonly scene = new Scene();
+  readonly controls: OrbitControls;
+  private readonly renderer: WebGLRenderer;
+  private readonly camera = new PerspectiveCamera(45, 1, 0.02, 50);
+  private isDue = false;
+  /** Pictures drawn since the page was opened. */
+  drawn = 0;
+
+  /** Throws where there is no WebGL. */
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    Object3D.DEFAULT_UP.set(0, 0, 1);
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(2.4, -2.4, 1.8);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.target.set(0.2, 0, 0.4);
+    this.controls.addEventListener("change", () => this.draw());
+    this.controls.update();
+    this.addSurroundings();
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    this.resize();
+  }
+
+  /** Soon, and once for all that changes meanwhile. */
+  draw(): void {
+    if (this.isDue) return;
+    this.isDue = true;
+    requestAnimationFrame(() => {
+      this.isDue = false;
+      this.scene.background = new Color(getComputedStyle(this.canvas).backgroundColor);
+      this.renderer.render(this.scene, this.camera);
+      this.drawn += 1;
+    });
+  }
+
+  /** Looks at all of `objects`, from where it looks now. */
+  fit(objects: readonly Object3D[]): void {
+    const box = new Box3();
+    for (const object of objects) box.expandByObject(object);
+    if (box.isEmpty()) return;
+    const middle = box.getCenter(new Vector3());
+    const radius = box.getSize(new Vector3()).length() / 2;
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    const distance = radius / Math.sin((this.camera.fov * Math.PI) / 360);
+    this.look(middle.clone().addScaledVector(direction, distance), middle);
+  }
+
+  look(from: Vector3, at: Vector3, up = new Vector3(0, 0, 1)): void {
+    this.camera.up.copy(up);
+    this.camera.position.copy(from);
+    this.controls.target.copy(at);
+    this.controls.update();
+    this.draw();
+  }
+
+  private addSurroundings(): void {
+    const grid = new GridHelper(4, 16, "#7b8794", "#7b8794");
+    grid.rotation.x = Math.PI / 2; // three.js lays it out with y up
+    for (const material of [grid.material].flat()) Object.assign(material, { transparent: true, opacity: 0.35 });
+    const light = new DirectionalLight("#ffffff", 2.2);
+    light.position.set(2, -3, 5);
+    this.scene.add(grid, new AxesHelper(0.3), new AmbientLight("#ffffff", 1.3), light);
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+}

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+// A real Chromium, without a screen and without a graphics card.
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import axe from "axe-core";
+import { chromium } from "playwright-core";
+
+const OUT = process.env.CALIBRD_PAGE_OUT ?? "/tmp/calibrd-page";
+const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+/** What went wrong in a page, or left its host. */
+export class Faults {
+  errors = [];
+  foreign = [];
+
+  watch(page, url) {
+    page.on("console", (message) => message.type() === "error" && this.errors.push(message.text()));
+    page.on("pageerror", (error) => this.errors.push(String(error)));
+    page.on("request", (request) => {
+      const asked = request.url();
+      if (!asked.startsWith(`${url}/`) && !/^(blob|data):/.test(asked)) this.foreign.push(asked);
+    });
+  }
+}
+
+export async function openBrowser(...flags) {
+  return chromium.launch({ executablePath: process.env.CALIBRD_CHROMIUM ?? "/usr/bin/chromium", args: [...FLAGS, ...flags] });
+}
+
+/** A page of its own, with a session storage of its own. */
+export async function openPage(browser, url, faults, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  await context.grantPermissions(["clipboard-read", "clipboard-write"], { origin: url });
+  const page = await context.newPage();
+  page.setDefaultTimeout(30_000);
+  faults.watch(page, url);
+  await page.goto(`${url}/`);
+  return page;
+}
+
+/** Keeps a picture as output of the test. */
+export async function keep(page, name) {
+  mkdirSync(OUT, { recursive: true });
+  await page.screenshot({ path: join(OUT, `${name}.png`) });
+}
+
+/** Faults that axe-core calls serious or critical: "rule: selector". */
+export async function seriousFaults(page) {
+  // Not as a script element, which the page's policy forbids.
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
+  return violations
+    .filter(({ impact }) => impact === "serious" || impact === "critical")
+    .flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(" ")} ${node.any[0]?.message ?? ""}`));
+}
+
+export const part = (page, name) => page.locator(`[data-test=${name}]`);
