@@ -29,7 +29,7 @@ ROUTES = [
     ("GET", "/api/v1/cell/cloud", READ), ("GET", f"/api/v1/sensors/{SENSOR}/clouds/measured", READ),
     ("GET", f"/api/v1/sensors/{SENSOR}/clouds/virtual", READ), ("GET", f"/api/v1/sensors/{SENSOR}/clouds/residual", READ),
     ("GET", f"/api/v1/sensors/{SENSOR}/next-posture", READ), ("GET", f"/api/v1/sensors/{SENSOR}/calibrations", READ),
-    ("GET", "/api/v1/session", READ), ("GET", f"/api/v1/sensors/{SENSOR}/frames", READ), ("GET", "/api/v1/robot/joints", READ),
+    ("GET", "/api/v1/session", OPEN), ("GET", f"/api/v1/sensors/{SENSOR}/frames", READ), ("GET", "/api/v1/robot/joints", READ),
     ("GET", "/api/v1/robot/urdf", READ), ("GET", "/api/v1/robot/links/none/mesh", READ),
     ("GET", "/metrics", READ), ("GET", "/api/v1/calibrations/none", READ), ("GET", "/api/v1/calibrations/none/capture", READ),
     ("GET", "/api/v1/robot/motions", READ), ("GET", "/api/v1/robot/motions/none", READ),

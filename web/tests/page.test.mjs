@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// The page against the real daemon and the simulated cell, by clicking.
+// The page against the real daemon and the simulated cell, by clicking. Each test goes on where the one before it ended.
 import assert from "node:assert/strict";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { keep, Faults, openBrowser, openPage, part, seriousFaults } from "./lib/browser.mjs";
-import { Cell, SENSOR, waitUntil } from "./lib/cell.mjs";
+import { Faults, keep, openBrowser, openPage, part, seriousFaults } from "./lib/browser.mjs";
+import { Cell, SENSOR, sleep, waitUntil } from "./lib/cell.mjs";
 
 const faults = new Faults();
-let cell, browser, page;
+let cell, browser, page, first;
 
 before(async () => {
   browser = await openBrowser();
-  cell = await Cell.start("drift.healing=ask", "pose.max_unverified=20s");
+  cell = await Cell.start("drift.healing=ask", "pose.max_unverified=20s", `sensors.${SENSOR}.workspace.tray=[0.5,0.0,0.1]`);
   page = await openPage(browser, cell.url, faults);
 });
 
@@ -21,30 +22,173 @@ after(async () => {
 });
 
 const text = (name) => part(page, name).first().textContent();
-const state = (wanted) => waitUntil(`the page says ${wanted}`, async () => (await text("state")) === wanted, 60_000);
+const says = (name, wanted, timeoutMs = 60_000) =>
+  waitUntil(`"${name}" says ${wanted}`, async () => (wanted instanceof RegExp ? wanted.test(await text(name)) : (await text(name)) === wanted), timeoutMs);
+const tab = (name) => page.locator(`#tab-${name}`).click();
+const confirm = () => page.locator("dialog[open] button[value=go]").click();
+const pose = () => cell.api(`/api/v1/sensors/${SENSOR}/pose`);
 
-test("an empty cell is shown as one: live, robot drawn, no pose", async () => {
-  await waitUntil("it is live", async () => (await text("connection")) === "live");
-  await state("not valid · uncalibrated");
+test("an empty cell is shown as one: live, robot drawn, no pose to take", async () => {
+  await says("connection", "live");
+  await says("state", "not valid · uncalibrated");
   await waitUntil("the robot is drawn", () => page.locator("canvas[data-robot=shown]").count());
   assert.match(await text("error"), /no pose yet/);
+  await tab("pose");
+  assert.match(await text("pose-refusal"), /not valid/);
+  assert.equal(await part(page, "copy").isDisabled(), true);
+  await tab("act");
   await keep(page, "1-uncalibrated");
 });
 
 test("the first calibration, by clicking, ends with a valid pose", async () => {
   await part(page, "calibrate").click();
   await keep(page, "2-asked");
-  await page.locator("dialog[open] button[value=go]").click();
+  await confirm();
   await part(page, "job").waitFor();
   await keep(page, "3-calibrating");
-  await state("valid");
-  assert.equal((await cell.api(`/api/v1/sensors/${SENSOR}/pose`)).valid, true);
+  await says("state", "valid");
+  first = await pose();
+  assert.equal(first.valid, true);
   await waitUntil("the cloud is drawn", () => page.locator("canvas[data-cloud=shown]").count());
+  await says("error", /tray .*mm \(1σ\)/);
   await keep(page, "4-valid");
 });
 
-test("nothing of it is an error, goes to another host, or shuts somebody out", async () => {
-  assert.deepEqual(await seriousFaults(page), []);
+test("a copied pose is what the interface gives", async () => {
+  await tab("pose");
+  for (const format of ["ros2", "abb", "kuka"]) {
+    await part(page, "format").selectOption(format);
+    const given = await (await fetch(`${cell.url}/api/v1/sensors/${SENSOR}/pose?format=${format}`)).text();
+    await waitUntil(`${format} is shown`, async () => (await text("pose")) === given);
+    await part(page, "copy").click();
+    await waitUntil("it is on the clipboard", async () => (await page.evaluate(() => navigator.clipboard.readText())) === given);
+  }
+  await keep(page, "5-pose");
+  await tab("act");
+});
+
+test("the sensor's eye shows depth and outline, in every colouring", async () => {
+  await part(page, "by-eye").click();
+  await waitUntil("the eye draws", () => page.locator("canvas.eye[data-drawn=yes]").count());
+  for (const colouring of ["residual", "class", "depth"]) {
+    await part(page, "colouring").selectOption(colouring);
+    await sleep(300);
+    await keep(page, `6-eye-${colouring}`);
+  }
+  await part(page, "by-space").click();
+});
+
+test("a knock is shown as drift, and what healing finds waits to be accepted", async () => {
+  await cell.knock();
+  await says("state", "not valid · drifted");
+  assert.match(await text("verdict"), /sensor moved/);
+  await keep(page, "7-drifted");
+  await tab("drift");
+  await says("drift-events", /sensor moved/);
+  await keep(page, "8-drift");
+  await tab("act");
+  await part(page, "accept").waitFor({ timeout: 60_000 });
+  await keep(page, "9-candidate");
+  assert.equal((await pose()).valid, false);
+  await part(page, "accept").click();
+  await confirm();
+  await says("state", "valid");
+  assert.notEqual((await pose()).calibration, first.calibration);
+});
+
+test("rolled back to a pose that the sensor no longer has, the page does not call it valid", async () => {
+  const second = (await pose()).calibration;
+  await tab("history");
+  const row = (id) => page.locator(`tr[data-id="${id}"]`);
+  for (const id of [first.calibration, second]) await row(id).locator("input").check();
+  await says("diff", /Position \d+\.\d+ mm/);
+  await keep(page, "10-history");
+  await row(first.calibration).locator("[data-test=rollback]").click();
+  await confirm();
+  await waitUntil("the first one is served", () => row(first.calibration).getAttribute("data-current").then((is) => is === "true"));
+  await says("state", /^not valid · (unverified|drifted)$/);
+  await keep(page, "11-rolled-back");
+  await row(second).locator("[data-test=rollback]").click();
+  await confirm();
+  await says("state", "valid");
+  await tab("act");
+});
+
+test("light and dark, on a screen and on a tablet: all of it is there, and nobody is shut out", async () => {
+  for (const colorScheme of ["light", "dark"])
+    for (const [width, height] of [[1280, 720], [820, 1180]]) {
+      await page.emulateMedia({ colorScheme });
+      await page.setViewportSize({ width, height });
+      await sleep(200);
+      assert.deepEqual(await seriousFaults(page), [], `${colorScheme} ${width}`);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing hangs over");
+      await keep(page, `12-${colorScheme}-${width}`);
+    }
+  await page.setViewportSize({ width: 1280, height: 720 });
+});
+
+test("tabs are reached and changed by keyboard", async () => {
+  await page.locator("#tab-act").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.locator("#tab-history").getAttribute("aria-selected"), "true");
+  await page.keyboard.press("ArrowLeft");
+});
+
+test("nothing so far is an error, or goes to another host", () => {
   assert.deepEqual(faults.errors, []);
   assert.deepEqual(faults.foreign, []);
+});
+
+test("a lost daemon is shown within 2 s, what is old is called so, and the page comes back by itself", async () => {
+  await cell.daemon.end("SIGKILL");
+  const lost = performance.now();
+  await waitUntil("it is shown", async () => /lost/.test(await text("connection")), 5000, 20);
+  const afterMs = performance.now() - lost;
+  console.log(`a killed daemon is shown after ${Math.round(afterMs)} ms`);
+  assert.ok(afterMs < 2000, `${afterMs} ms`);
+  await says("state", /as of .* ago/, 5000);
+  await keep(page, "13-lost");
+  await cell.serve();
+  await says("connection", "live", 10_000);
+  await says("state", "valid");
+});
+
+test("with a token that may only read, nothing else is offered", async () => {
+  const file = join(cell.folder, "tokens.json");
+  const token = Cell.token(file, "screen", "read");
+  await cell.daemon.end();
+  cell.settings.push(`server.tokens_file=${file}`);
+  await cell.serve();
+  const guarded = new Faults();
+  const guest = await openPage(browser, cell.url, guarded);
+  const enter = async (word) => {
+    await part(guest, "token").fill(word);
+    await guest.keyboard.press("Enter");
+  };
+  await enter("calibrd_wrong");
+  await waitUntil("it is refused", async () => /not know/.test(await guest.locator("dialog[open] .error").textContent()));
+  await keep(guest, "14-token");
+  await enter(token);
+  await waitUntil("it is live", async () => (await part(guest, "connection").textContent()) === "live");
+  assert.equal(await part(guest, "who").textContent(), "screen (read)");
+  assert.equal(await part(guest, "read-only").count(), 1);
+  for (const name of ["calibrate", "capture", "bundle", "rollback", "accept"]) assert.equal(await part(guest, name).count(), 0, name);
+  await keep(guest, "15-read-only");
+  assert.deepEqual(guarded.errors, []);
+});
+
+test("without WebGL all but the 3D view works, and says so", async () => {
+  cell.settings.pop();
+  await cell.daemon.end();
+  await cell.serve();
+  const plain = await openBrowser("--disable-3d-apis");
+  try {
+    const flat = await openPage(plain, cell.url, new Faults());
+    await waitUntil("it is live", async () => (await part(flat, "connection").textContent()) === "live");
+    assert.match(await part(flat, "no-webgl").textContent(), /no 3D view/);
+    await waitUntil("the eye draws", () => flat.locator("canvas.eye[data-drawn=yes]").count());
+    await keep(flat, "16-without-webgl");
+  } finally {
+    await plain.close();
+  }
 });

@@ -5,7 +5,8 @@
 /** 4×4, row-major: maps points of the second frame of its name to the first. */
 export type Matrix4 = number[][];
 
-export type Scope = "read" | "calibrate" | "admin";
+/** `open`: nothing that needs a token. */
+export type Scope = "open" | "read" | "calibrate" | "admin";
 export type PoseState = "uncalibrated" | "calibrated" | "unverified" | "drifted";
 export type Verdict = "accepted" | "uncertain" | "rejected";
 

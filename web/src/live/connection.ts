@@ -23,10 +23,14 @@ export class Connection {
     private readonly state: CellState,
   ) {
     client.onTokenWanted = (problem) => {
-      state.session.value = null;
-      state.connection.value = { kind: "token", reason: problem.code === "token_unknown" ? problem.message : "" };
+      this.wantToken(problem.code === "token_unknown");
     };
     document.addEventListener("visibilitychange", () => this.wakeUp());
+  }
+
+  private wantToken(isUnknown: boolean): void {
+    this.state.session.value = null;
+    this.state.connection.value = { kind: "token", reason: isUnknown ? "The daemon does not know this token." : "" };
   }
 
   /** Never returns. */
@@ -64,7 +68,9 @@ export class Connection {
   private async connectOnce(): Promise<void> {
     if (document.hidden) return;
     const ending = new AbortController();
-    this.state.session.value = await this.client.get<Session>("/api/v1/session", AbortSignal.timeout(SILENCE_MS));
+    const session = await this.client.get<Session>("/api/v1/session", AbortSignal.timeout(SILENCE_MS));
+    if (session.scope === "open") return this.wantToken(this.client.token !== "");
+    this.state.session.value = session;
     await this.refreshAll(AbortSignal.timeout(5 * SILENCE_MS));
     this.lastSign = performance.now();
     this.state.connection.value = { kind: "live" };

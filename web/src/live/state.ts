@@ -34,7 +34,7 @@ export class CellState {
   }
 
   may(scope: Scope): boolean {
-    const order: Scope[] = ["read", "calibrate", "admin"];
+    const order: Scope[] = ["open", "read", "calibrate", "admin"];
     const granted = this.session.value?.scope;
     return granted !== undefined && order.indexOf(granted) >= order.indexOf(scope);
   }

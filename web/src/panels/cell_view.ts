@@ -149,6 +149,7 @@ export class CellView {
     const frame = this.context.frames.frame.value;
     if (!frame) return this.placeClouds();
     this.points.take(frame);
+    this.canvas.dataset["points"] = String(frame.depth.reduce((count, depth) => count + (depth > 0 ? 1 : 0), 0));
     for (const cloud of [this.measured, this.predicted, this.compared]) cloud.refresh();
     this.placeClouds();
   }

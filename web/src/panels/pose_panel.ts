@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-import { ApiProblem, explain } from "../api/client";
+import { explain } from "../api/client";
 import { h, setText } from "../ui/dom";
 import { type Context, perform, sensorPath } from "./context";
 import { axesPicture } from "./axes_picture";
@@ -39,12 +39,13 @@ export function posePanel(context: Context): HTMLElement {
 /** The daemon's own bytes: what is copied is what cell software would get. */
 async function takePose(context: Context, format: string): Promise<{ text: string; refusal: string }> {
   if (!context.state.isLive) return { text: "", refusal: "The daemon is silent: no pose can be taken." };
+  const pose = context.state.chosenSensor?.pose;
+  if (!pose?.valid) return { text: "", refusal: `No pose to take: it is not valid. ${pose?.reason ?? ""}` };
   try {
     const response = await context.client.fetch(`${sensorPath(context)}/pose?format=${format}`);
     return { text: await response.text(), refusal: "" };
   } catch (failure) {
-    const isNotValid = failure instanceof ApiProblem && failure.code === "pose_not_valid";
-    return { text: "", refusal: isNotValid ? `No pose to take: ${explain(failure)}` : explain(failure) };
+    return { text: "", refusal: explain(failure) };
   }
 }
 

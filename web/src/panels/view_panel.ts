@@ -61,7 +61,7 @@ function viewControls(context: Context, view: CellView | null, eye: Eye, stage: 
     legendPlace.replaceChildren(legend(name));
   };
   colouring.addEventListener("change", recolour);
-  const controls = [h("span", { class: "group" }, space, look), colouring];
+  const controls = [h("span", { class: "group" }, space, look), colouring, densityControl(context)];
   if (view) {
     const box = (name: "measured" | "predicted", title: string, isOn: boolean): HTMLElement => {
       const self = h("input", { type: "checkbox", checked: isOn, id: `show-${name}` });
@@ -80,6 +80,14 @@ function viewControls(context: Context, view: CellView | null, eye: Eye, stage: 
   recolour();
   choose(!view || isByEye());
   return controls;
+}
+
+/** How many of the sensor's pixels are fetched and drawn. */
+function densityControl(context: Context): HTMLElement {
+  const steps = { 1: "every pixel", 2: "every 2nd pixel", 4: "every 4th pixel" };
+  const density = h("select", { "aria-label": "Density of the points", "data-test": "density" }, ...Object.entries(steps).map(([step, title]) => h("option", { value: step, selected: step === "2" }, title)));
+  density.addEventListener("change", () => context.frames.configure({ step: Number(density.value), rate_hz: 10 }));
+  return density;
 }
 
 /** The slider between before (orange) and after (green). */

@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const SOURCE = fileURLToPath(new URL("../../..", import.meta.url));
-const BUILD = process.env.CALIBRD_BUILD ?? join(SOURCE, "build/release");
+export const BUILD = process.env.CALIBRD_BUILD ?? join(SOURCE, "build/release");
 const ROBOTS = join(BUILD, "share/calibrd/robots");
 const URDF = join(ROBOTS, "demo_arm7/urdf/demo_arm7.urdf");
 export const SENSOR = "kinect2";

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Drives the page in Debian's Chromium against the daemon and the simulated cell. Build first (scripts/test.sh does).
+#   scripts/page.sh test               the tests of ctest's e2e_page; pictures go to build/release/page
+#   scripts/page.sh figures [MINUTES]  prints the page's figures; memory is watched for so long (1; the issue's figure: 30)
+#   scripts/page.sh picture            makes docs/page.webp, the picture in the README (needs cwebp, of Debian's package webp)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+export CALIBRD_BUILD=${CALIBRD_BUILD:-$PWD/build/release}
+export CALIBRD_PAGE_OUT=${CALIBRD_PAGE_OUT:-$CALIBRD_BUILD/page}
+
+case ${1:-} in
+  test) exec node --test --test-reporter=spec web/tests/page.test.mjs ;;
+  figures) exec node web/tests/figures.mjs "${2:-1}" ;;
+  picture)
+    node web/tests/picture.mjs
+    cwebp -quiet -q 80 "$CALIBRD_PAGE_OUT/picture.png" -o docs/page.webp
+    ;;
+  *)
+    sed -n '6,8s/^# *//p' "$0" >&2
+    exit 2
+    ;;
+esac
