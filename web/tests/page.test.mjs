@@ -44,7 +44,7 @@ test("the first calibration, by clicking, ends with a valid pose", async () => {
   await part(page, "calibrate").click();
   await keep(page, "2-asked");
   await confirm();
-  await part(page, "job").waitFor();
+  await part(page, "job").waitFor({ timeout: 60_000 });
   await keep(page, "3-calibrating");
   await says("state", "valid");
   first = await pose();

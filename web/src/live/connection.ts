@@ -15,6 +15,7 @@ const REFRESH_MS = 1000;
 export class Connection {
   private lastEventId = "";
   private lastSign = 0;
+  private lastWatch = 0;
   private wakeUp: () => void = () => undefined;
   private readonly refreshing = new Map<string, Promise<void>>();
 
@@ -87,7 +88,10 @@ export class Connection {
   }
 
   private watch(ending: AbortController): void {
-    if (document.hidden || performance.now() - this.lastSign > SILENCE_MS) ending.abort();
+    const now = performance.now();
+    if (now - this.lastWatch > SILENCE_MS / 2) this.lastSign = now; // it is this tab that was held up: what has come is not read yet
+    this.lastWatch = now;
+    if (document.hidden || now - this.lastSign > SILENCE_MS) ending.abort();
   }
 
   private followEvents(signal: AbortSignal): Promise<void> {

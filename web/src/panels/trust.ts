@@ -37,7 +37,7 @@ class TrustLine {
   private readonly verdict = h("span", { class: "verdict", "data-test": "verdict" });
   private readonly error = h("dd", { "data-test": "error" });
   private readonly age = h("dd", { "data-test": "age" });
-  private readonly statistic = h("dd", { "data-test": "statistic" });
+  private readonly statistic = h("span", { "data-test": "statistic" });
   private readonly bar = h("div", { class: "bar" });
   private readonly why = h("p", { class: "why", "data-test": "why" });
   private readonly next = h("button", { class: "small", "data-test": "suggest" }, "Where to move the robot");
@@ -63,7 +63,7 @@ class TrustLine {
         {},
         h("div", {}, h("dt", {}, "Expected error"), this.error),
         h("div", {}, h("dt", {}, "Calibrated / checked"), this.age),
-        h("div", {}, h("dt", {}, "Drift statistic / threshold"), this.statistic, h("div", { class: "meter" }, this.bar)),
+        h("div", {}, h("dt", {}, "Drift statistic / threshold"), h("dd", {}, this.statistic, h("div", { class: "meter" }, this.bar))),
       ),
       this.why,
       this.next,
@@ -117,7 +117,7 @@ function why({ pose, drift }: SensorState, isOld: boolean): string {
     const healing = pose.job
       ? "A calibration is under way."
       : drift.healing_in_s === null ? "" : `It is calibrated again in ${duration(drift.healing_in_s)}.`;
-    return [pose.reason ?? "", healing].filter(Boolean).join(" ");
+    return [pose.reason ?? "", healing].filter(Boolean).join(". ");
   }
   return drift.watched && drift.verdict !== "in_place" ? drift.meaning : "The last check agreed; nothing to do.";
 }
