@@ -9,9 +9,9 @@ using namespace std::chrono_literals;
 void declare_drift(std::vector<Setting>& table) {
   SectionDeclarer<DriftConfig> key(table, {"drift"},
                                    [](Config& c, const Names&) -> DriftConfig& { return c.drift; });
-  key("tolerance_mm", &DriftConfig::tolerance_mm, real(0.05, 100), "mm",
+  key("tolerance_mm", &DriftConfig::tolerance_mm, real(0.05, 2), "mm",
       "A sensor that has moved what it sees by less stands.");
-  key("tolerance_mrad", &DriftConfig::tolerance_mrad, real(0.05, 100), "mrad",
+  key("tolerance_mrad", &DriftConfig::tolerance_mrad, real(0.05, 2), "mrad",
       "A sensor that has turned by less stands.");
   key("false_alarms_per_year", &DriftConfig::false_alarms_per_year, real(1e-6, 1000), "",
       "How often a sensor that stands may be taken for moved; sets the threshold of the test.");

@@ -12,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto kBlindAfter = 700ms;  ///< a pose must not be valid a second after the sensor was moved
 constexpr auto kFramePatience = 100ms;
 constexpr auto kJointsPatience = 10ms;  ///< less than a controller's cycle
 constexpr std::size_t kRateFrames = 60;
@@ -57,6 +58,7 @@ void LiveSensor::start(std::unique_ptr<DepthSource> source) {
 void LiveSensor::run() {
   auto* source = source_.get();
   name_thread("sensor " + settings_.id);
+  entered_at_ = Clock::now();
   while (!is_stopping_) {
     heartbeat_.beat();
     if (auto frame = source->next(pending_.empty() ? kFramePatience : kJointsPatience))
@@ -82,6 +84,7 @@ void LiveSensor::take_up(DepthFrame frame) {
   if (const auto verdict = gate_.enter(frame.sequence, frame.stamp, &frame.depth);
       verdict != FrameVerdict::usable)
     return note(verdict);
+  entered_at_ = Clock::now();
   auto& entered = *pending_.emplace_back(std::make_shared<Sighting>());
   entered.view.depth = std::move(frame.depth);
   entered.view.image = std::move(frame.image);
@@ -142,9 +145,11 @@ void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
   for (const auto& task : tasks) is_of_use ? task->offer(sighting.view) : task->interrupt();
 }
 
-/// A sensor that was away, if only for a restart of its process, may have been moved.
+/// A sensor that was away, if only for a restart of its process, may have been moved. One whose frames are all the
+/// same, or out of order, tells as little as one that sends none.
 void LiveSensor::notice_loss(const SensorHealth& health) {
-  const bool away = health.state != SensorHealth::State::streaming;
+  const bool away =
+      health.state != SensorHealth::State::streaming || Clock::now() - entered_at_ > kBlindAfter;
   if (!away && health.restarts == restarts_) return;
   restarts_ = health.restarts;
   {

@@ -154,6 +154,7 @@ class LiveSensor {
   ViewGate gate_;
   std::deque<std::shared_ptr<Sighting>> pending_;  // entered, their joints not all there; oldest first
   std::uint64_t restarts_ = 0;                     // of the source, as far as noticed
+  Clock::time_point entered_at_;                   // when a frame last told something new
 
   mutable std::mutex mutex_;  // guards what follows
   std::unique_ptr<DepthSource> source_;

@@ -24,8 +24,11 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (has_moved && !has_moved_) moved_at_ = Clock::now();
   has_moved_ = has_moved;
   if (has_moved) watch_.on_sensor_moved();
-  if (monitor_->is_out_of_sight()) watch_.on_view_lost();
-  if (monitor_->is_in_place()) watch_.on_background_in_place(sighting.stamp);
+  // While a single thing shows a slide, a frame whose noise hides that slide proves nothing: so this comes first.
+  if (monitor_->is_out_of_sight())
+    watch_.on_view_lost();
+  else if (monitor_->is_in_place())
+    watch_.on_background_in_place(sighting.stamp);
   forget_evidence(was_plausible);
 }
 

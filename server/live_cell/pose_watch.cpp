@@ -101,11 +101,10 @@ std::string PoseWatch::doubt() const {
   if (!objection_.empty()) return objection_;
   switch (doubt_) {
     case Doubt::sensor_lost:
-      return "the sensor was lost or has moved since the pose was found; the pose is checked when frames "
-             "come "
-             "and the robot holds still in view";
+      return "the sensor was lost, sends nothing new, or has moved since the pose was found; the pose is checked "
+             "when frames come and the robot holds still in view";
     case Doubt::view_lost:
-      return "for two seconds the sensor has seen neither the background nor the robot where the pose says; "
+      return "for a while the sensor has seen neither the background nor the robot where the pose says; "
              "take away what stands before it, or, if it was moved, calibrate again";
     case Doubt::disagreement:
       return "the last check disagreed with the pose; further checks follow at once";

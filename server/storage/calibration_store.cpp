@@ -127,7 +127,7 @@ Status CalibrationStore::insert_drift(const std::string& calibration_id) {
 
 /// Of the same sensor: all but the newest, and that of the current pose.
 Status CalibrationStore::drop_old_backgrounds(const std::string& calibration_id) {
-  constexpr int kKept = 20;  // kOldBackgroundsMayGo guards as many
+  constexpr int kKept = 200;  // kOldBackgroundsMayGo guards as many
   Statement remove(
       *database_,
       "DELETE FROM backgrounds WHERE calibration_id IN (SELECT c.id FROM calibrations c "

@@ -78,12 +78,12 @@ CREATE TRIGGER evidence_stays BEFORE UPDATE ON evidence BEGIN SELECT RAISE(ABORT
 CREATE TRIGGER evidence_remains BEFORE DELETE ON evidence BEGIN SELECT RAISE(ABORT, 'evidence is kept'); END;
 )sql";
 
-/// A megabyte each, and only of use to a pose that is chosen again: those with twenty newer ones may go.
+/// A megabyte each, and only of use to a pose that is chosen again: those with 200 newer ones may go.
 inline constexpr const char* kOldBackgroundsMayGo = R"sql(
 DROP TRIGGER backgrounds_remain;
 CREATE TRIGGER backgrounds_remain BEFORE DELETE ON backgrounds
 WHEN (SELECT COUNT(*) FROM calibrations old JOIN calibrations newer ON newer.sensor_id = old.sensor_id AND newer.number > old.number
-      JOIN backgrounds kept ON kept.calibration_id = newer.id WHERE old.id = OLD.calibration_id) < 20
+      JOIN backgrounds kept ON kept.calibration_id = newer.id WHERE old.id = OLD.calibration_id) < 200
 BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
 )sql";
 

@@ -59,6 +59,23 @@ class Drift(CellTest):
             self.assertLess(mrad, MAX_MRAD)
             self.wait_verdict(daemon, "in_place")
 
+    def test_a_sensor_that_shows_nothing_new_or_nothing_at_all_is_not_believed(self):
+        simulator, daemon = self.watched()
+        alike = {"noise": 0, "dropout": 0, "flying_mixed": 0, "flying_dropped": 0, "grazing_deg": 90}  # each frame as the one before
+        for name, mode, errors in (("the same frame again and again", "replay", alike), ("no frames", "silent", {}), ("no depth", "normal", {"dropout": 1})):
+            with self.subTest(name):
+                simulator.tell("PUT", "/motion", mode="hold")
+                simulator.tell("PUT", f"/sensors/{SENSOR}/errors", depth={"preset": "kinect2"})
+                simulator.sensor_mode("normal")
+                wait_until("the pose is valid", lambda: daemon.pose()["valid"], 60)
+                time.sleep(1)
+                simulator.tell("PUT", f"/sensors/{SENSOR}/errors", depth={"preset": "kinect2", **errors})
+                simulator.sensor_mode(mode)
+                begin = time.monotonic()
+                pose = wait_until("the pose is valid no longer", lambda: None if (p := daemon.pose())["valid"] else p, 20, 0.01)
+                self.assertLess(time.monotonic() - begin, 2.5)  # 0.7 to 0.8 s where nobody else wants the processor
+                self.assertEqual(pose["state"], "unverified")
+
     def test_a_candidate_waits_to_be_accepted(self):
         simulator, daemon = self.watched("drift.healing=ask")
         self.knock(simulator, daemon, **KNOCK)

@@ -133,14 +133,14 @@ TEST_F(Store, BackgroundOutlivesARestartAndTheFirstStays) {
 TEST_F(Store, OfBackgroundsTheNewestAndThatOfTheCurrentPoseAreKept) {
   const auto name = [](int i) { return "c" + std::to_string(i); };
   const auto has = [&](const std::string& id) { return store_->background(id)->has_value(); };
-  for (int i = 0; i < 25; ++i) {
+  for (int i = 0; i < 205; ++i) {
     const auto calibration = add(name(i));
     finish(calibration);
     EXPECT_TRUE(store_->add_background(name(i), {1, 2, 3}));
     if (i == 1) EXPECT_TRUE(store_->activate(calibration, ""));
   }
-  for (int i = 0; i < 25; ++i) EXPECT_EQ(has(name(i)), i == 1 || i >= 5) << i;
-  EXPECT_EQ(store_->history({"kinect2", 50, ""})->calibrations.size(), 25U);
+  for (int i = 0; i < 205; ++i) EXPECT_EQ(has(name(i)), i == 1 || i >= 5) << i;
+  EXPECT_EQ(store_->history({"kinect2", 500, ""})->calibrations.size(), 205U);
   EXPECT_EQ(run_raw("DELETE FROM backgrounds WHERE calibration_id = 'c5'"), "backgrounds are kept");
 }
 
