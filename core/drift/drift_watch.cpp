@@ -22,7 +22,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
 constexpr double kNewestDisputed = 1.0 / 30;  // weight of a frame in the mean of a disputed shift
 constexpr double kRobotHolds_s = 10;
-constexpr double kOutOfSight_s = 0.8;  // a pose that nothing speaks for is not valid a second later
+constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends

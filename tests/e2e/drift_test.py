@@ -73,7 +73,8 @@ class Drift(CellTest):
                 simulator.sensor_mode(mode)
                 begin = time.monotonic()
                 pose = wait_until("the pose is valid no longer", lambda: None if (p := daemon.pose())["valid"] else p, 20, 0.01)
-                self.assertLess(time.monotonic() - begin, 2.5)  # 0.7 to 0.8 s where nobody else wants the processor
+                # 0.7 to 0.8 s, and 2 s of darkness, where nobody else wants the processor
+                self.assertLess(time.monotonic() - begin, 4 if name == "no depth" else 2.5)
                 self.assertEqual(pose["state"], "unverified")
 
     def test_a_candidate_waits_to_be_accepted(self):

@@ -171,18 +171,18 @@ TEST_F(DriftWatchTest, DarkIsNoEvidence) {
   EXPECT_EQ(watch_for(1.5), DriftVerdict::in_place);
 }
 
-TEST_F(DriftWatchTest, WhatNeitherBackgroundNorRobotHasShownForAMomentIsOutOfSight) {
+TEST_F(DriftWatchTest, WhatNeitherBackgroundNorRobotHasShownForTwoSecondsIsOutOfSight) {
   watch_for(3);
   EXPECT_FALSE(watch_.is_out_of_sight());
   room_.hidden_share = 1;
-  watch_for(0.6);
+  watch_for(1.5);
   EXPECT_FALSE(watch_.is_out_of_sight());
-  watch_for(0.4);
+  watch_for(1);
   EXPECT_TRUE(watch_.is_out_of_sight());
   check(Vector6d::Zero());
   watch_for(0.5);
   EXPECT_FALSE(watch_.is_out_of_sight());
-  watch_for(0.6);
+  watch_for(2.5);
   EXPECT_TRUE(watch_.is_out_of_sight());
   room_.hidden_share = 0;
   watch_for(0.1);
