@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Drives the page in Debian's Chromium against the daemon and the simulated cell. Build first (scripts/test.sh does).
+# Drives the page in Debian's Chromium against the daemon and the simulated cell. Build first (scripts/test.sh does);
+# scripts/setup.sh --browser installs Chromium.
 #   scripts/page.sh test               the tests in a browser; pictures go to build/release/page
 #   scripts/page.sh figures [MINUTES]  prints the page's figures; memory is watched for so long (1; the figure: 30)
 #   scripts/page.sh picture            makes docs/page.webp, the picture in the README (needs cwebp, of Debian's package webp)
@@ -20,7 +21,7 @@ case ${1:-} in
     cwebp -quiet -q 80 "$CALIBRD_PAGE_OUT/picture.png" -o docs/page.webp
     ;;
   *)
-    sed -n '6,8s/^# *//p' "$0" >&2
+    sed -n '7,9s/^# *//p' "$0" >&2
     exit 2
     ;;
 esac

@@ -8,6 +8,7 @@
 #   scripts/setup.sh --check   only say what is missing; exit status 1 if something is
 #   scripts/setup.sh --list    print the packages
 #   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 300 MB); scripts/fuzz.sh does so
+#   scripts/setup.sh --browser install what scripts/page.sh drives the page with as well (Chromium)
 #   scripts/setup.sh --load    install what scripts/load.sh throughput compares with as well (wrk, nginx)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,7 +21,7 @@ readonly kLibraries=(
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev python3-jsonschema libfaketime)                          # tests
 readonly kPage=(nodejs npm) # a Node.js of one's own, 18 or newer, serves as well
-readonly kBrowser=chromium  # for the tests of the page; Ubuntu has it only as a snap
+readonly kBrowser=(chromium)  # Ubuntu has it only as a snap
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
 readonly kLoad=(wrk nginx-light)
 readonly kBoostPrefix=.deps/boost
@@ -45,7 +46,6 @@ distribution() {
 packages() {
   printf '%s\n' "${kTools[@]}" "${kLibraries[@]}" "${extra[@]}"
   has_node || printf '%s\n' "${kPage[@]}"
-  [ "$(distribution)" = ubuntu:24.04 ] || echo "$kBrowser"
 }
 
 has_node() { [ "$(node --version 2>/dev/null | sed 's/v\([0-9]*\).*/\1/')" -ge 18 ] 2>/dev/null && command -v npm >/dev/null; }
@@ -56,7 +56,8 @@ need_page_packages() { [ web/package-lock.json -nt web/node_modules/.package-loc
 
 install_page_packages() {
   say "installing the page's packages into web/node_modules"
-  (cd web && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2) ||
+  # Not npm ci: it refuses a lock file without rollup's builds for other platforms, which not every registry holds.
+  (cd web && npm install --no-save --ignore-scripts --no-audit --no-fund --loglevel=error >&2) ||
     say "npm could not: the daemon is built without its page"
 }
 
@@ -131,6 +132,7 @@ main() {
   case ${1:-} in
     --fuzz) extra=("${kFuzzing[@]}") && shift ;;
     --load) extra=("${kLoad[@]}") && shift ;;
+    --browser) extra=("${kBrowser[@]}") && shift ;;
   esac
   [ "${1:-}" != --list ] || { packages; return; }
   case "$os" in
@@ -145,7 +147,7 @@ main() {
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
-  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz, --load"
+  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz, --load, --browser"
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi
