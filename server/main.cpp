@@ -11,6 +11,7 @@
 #include "core/base/memory.hpp"
 #include "server/calibrate_command.hpp"
 #include "server/config/print_config.hpp"
+#include "server/healthcheck_command.hpp"
 #include "server/serve_command.hpp"
 #include "server/support_bundle_command.hpp"
 #include "server/token_command.hpp"
@@ -28,6 +29,11 @@ int with_output_written(int status) {
   const auto why = errno == 0 ? std::string("unknown reason") : std::generic_category().message(errno);
   std::cerr << "calibrd: the output could not be written (" << why << "); check where stdout leads\n";
   return kUsage;
+}
+
+int print(const std::string& text) {
+  std::cout << text;
+  return 0;
 }
 
 int dispatch(int argc, char** argv) {
@@ -48,20 +54,18 @@ int dispatch(int argc, char** argv) {
   auto* bundle =
       app.add_subcommand("support-bundle", "Save what a daemon tells of itself, for who is to help");
   calibrd::add_support_bundle_options(*bundle, bundle_options);
+  calibrd::HealthcheckOptions health_options;
+  auto* health = app.add_subcommand("healthcheck", "Ask a running daemon whether it is well: status 0 or 1");
+  calibrd::add_healthcheck_options(*health, health_options);
   auto* metrics = app.add_subcommand("metrics-reference", "Print docs/metrics.md");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
     return app.exit(failure) == 0 ? 0 : kUsage;
   }
-  if (reference->parsed()) {
-    std::cout << calibrd::config_reference();
-    return 0;
-  }
-  if (metrics->parsed()) {
-    std::cout << calibrd::api::metrics_reference();
-    return 0;
-  }
+  if (reference->parsed()) return print(calibrd::config_reference());
+  if (metrics->parsed()) return print(calibrd::api::metrics_reference());
+  if (health->parsed()) return calibrd::run_healthcheck(health_options);
   if (bundle->parsed()) return calibrd::run_support_bundle(bundle_options);
   if (calibrate->parsed()) return calibrd::run_calibrate(calibrate_options);
   if (token->parsed()) return calibrd::run_token(token_options);

@@ -13,6 +13,8 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 
+#include "server/operations/own_address.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -24,19 +26,12 @@ constexpr timeval kPatience{30, 0};
 
 Error unreachable(const std::string& why) { return {std::make_error_code(std::errc::host_unreachable), why}; }
 
-asio::ip::address address_of(const std::string& configured, ErrorCode& failure) {
-  const auto address = asio::ip::make_address(configured, failure);
-  if (failure || !address.is_unspecified()) return address;
-  if (address.is_v6()) return asio::ip::address_v6::loopback();
-  return asio::ip::address_v4::loopback();
-}
-
 }  // namespace
 
 Result<std::string> fetch(const std::string& address, std::uint16_t port, const std::string& path,
                           const std::string& token) {
   ErrorCode failure;
-  const auto host = address_of(address, failure);
+  const auto host = own_address(address, failure);
   if (failure) return unreachable(address + ": " + failure.message());
   asio::io_context io;
   asio::ip::tcp::socket socket(io);
