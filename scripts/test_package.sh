@@ -1,0 +1,207 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Builds the .deb, installs it with apt into a clean root of this machine's Debian or Ubuntu release (its libraries are
+# those of that release), runs the daemon there as its user against a simulated cell, and purges it. As root.
+#   scripts/test_package.sh                ends with 0 when all of it is as it should be
+#   scripts/test_package.sh --build-only   prints the path of the .deb
+#   scripts/test_package.sh --keep         leaves the root where it is and prints its path
+# CALIBRD_PRESET=debug takes another preset. Packages come from the apt sources of this machine.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly kBuild=build/${CALIBRD_PRESET:-release} kHealthcheck=(/usr/bin/calibrd healthcheck)
+work='' root='' pids=() daemon=''
+
+say() { printf 'package: %4d s  %s\n' "$SECONDS" "$*" >&2; }
+
+die() {
+  say "FAILED: $*"
+  tail -n 30 "$work"/*.log >&2 2>/dev/null || true
+  exit 1
+}
+
+clean_up() {
+  local pid
+  for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
+  wait 2>/dev/null || true
+  [ -n "$root" ] || return 0
+  if mountpoint -q "$root/proc"; then umount "$root/proc"; fi
+  if [ "${keep:-}" = 1 ]; then
+    say "the root is $root"
+  else
+    rm -rf --one-file-system "$work"
+  fi
+}
+
+build() {
+  scripts/setup.sh
+  cmake --preset "${CALIBRD_PRESET:-release}" >&2
+  cmake --build "$kBuild" --target calibrd calibrd-sensor calibrd_pcl calibrd-sim calibrd_sim demo_robot web >&2
+  rm -rf "$kBuild/package"
+  (cd "$kBuild" && cpack -G DEB) >&2 || die "cpack failed"
+  deb=$(ls "$kBuild"/package/calibrd_*.deb)
+}
+
+# The first of this machine's sources for its release, as "URL SUITE"; whatever mirror that is.
+main_source() {
+  local suite
+  # shellcheck source=/dev/null
+  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+  # shellcheck disable=SC2016 # apt's own variables, and dpkg's below
+  apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Identifier: Packages' |
+    awk -v suite="$suite" '$2 == suite && $3 == "main" { print $1, suite; exit }'
+}
+
+make_root() {
+  local url suite
+  read -r url suite < <(main_source) || die "no apt source for this machine's release; see /etc/apt/sources.list.d"
+  say "a clean root of $suite"
+  # Packages that were fetched once are not fetched again.
+  mkdir -p "$PWD/build/package-cache"
+  debootstrap --variant=minbase --cache-dir="$PWD/build/package-cache" "$suite" "$root" "$url" >"$work/debootstrap.log" ||
+    die "debootstrap failed"
+  copy_apt_sources
+  mount -t proc proc "$root/proc"
+  echo '#!/bin/sh
+exit 101' >"$root/usr/sbin/policy-rc.d" # nothing is started on installation
+  chmod +x "$root/usr/sbin/policy-rc.d"
+}
+
+# All of the machine's sources for the release, its proxies and keys with them: updates count for versions.
+copy_apt_sources() {
+  rm -f "$root/etc/apt/sources.list"
+  cp -aL /etc/apt/. "$root/etc/apt/"
+  mkdir -p "$root/usr/share/keyrings"
+  cp -aL /usr/share/keyrings/. "$root/usr/share/keyrings/"
+  cp -aL /etc/ssl/certs /etc/resolv.conf "$work/" 2>/dev/null || true
+  mkdir -p "$root/etc/ssl" && cp -a "$work/certs" "$root/etc/ssl/"
+  [ ! -f "$work/resolv.conf" ] || cp "$work/resolv.conf" "$root/etc/resolv.conf"
+}
+
+in_root() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$root" "$@"; }
+
+as_daemon() { in_root setpriv --reuid calibrd --regid calibrd --init-groups --no-new-privs --inh-caps=-all "$@"; }
+
+# Everything in the root but what packages' tools write for themselves.
+inventory() {
+  (cd "$root" && find . -xdev \( -path ./proc -o -path ./var/cache -o -path ./var/lib/apt -o -path ./var/lib/dpkg \
+    -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort)
+}
+
+install_package() {
+  say "apt installs $(basename "$deb")"
+  in_root apt-get update -qq >"$work/apt.log" 2>&1 || die "apt-get update failed"
+  local dependencies
+  mkdir -p "$root/tmp/deb" && cp "$deb" "$root/tmp/deb/"
+  # Its dependencies first, so that what the package itself leaves behind can be told from what they do.
+  dependencies=$(in_root apt-get install -s --no-install-recommends "/tmp/deb/$(basename "$deb")" |
+    awk '$1 == "Inst" && $2 != "calibrd" { print $2 }')
+  # shellcheck disable=SC2086
+  in_root apt-get install -y -qq --no-install-recommends $dependencies >>"$work/apt.log" 2>&1 || die "apt failed"
+  cp "$root/etc/passwd" "$work/passwd" && cp "$root/etc/group" "$work/group"
+  inventory >"$work/before"
+  in_root apt-get install -y -qq --no-install-recommends "/tmp/deb/$(basename "$deb")" >>"$work/apt.log" 2>&1 ||
+    die "apt failed"
+  # shellcheck disable=SC2016
+  say "installed: $(in_root dpkg-query -W -f '${Version}, ${Installed-Size} KiB' calibrd); with it $(wc -w <<<"$dependencies") packages"
+}
+
+check_unit() {
+  local missing exposure
+  in_root ldd /usr/bin/calibrd /usr/bin/calibrd-sensor /usr/lib/calibrd/libcalibrd_pcl.so | grep 'not found' && die "a library is missing"
+  [ "$(in_root id -nG calibrd)" = "calibrd video" ] || die "the user is: $(in_root id calibrd)"
+  [ "$(in_root stat -c '%U %a' /var/lib/calibrd)" = "calibrd 750" ] || die "/var/lib/calibrd is not its own"
+  command -v systemd-analyze >/dev/null || { say "no systemd-analyze here: the unit is not checked"; return; }
+  # Of the unit's own lines alone: a minimal root lacks units that others name.
+  missing=$(systemd-analyze verify --root="$root" --man=no "$root/usr/lib/systemd/system/calibrd.service" 2>&1 | grep -F calibrd || true)
+  [ -z "$missing" ] || die "systemd-analyze verify: $missing"
+  exposure=$(systemd-analyze security --offline=true --root="$root" --no-pager calibrd.service | tail -n 1)
+  say "systemd-analyze security: ${exposure#→ }"
+  systemd-analyze security --offline=true --root="$root" --no-pager --threshold=30 calibrd.service >/dev/null ||
+    die "the unit is more exposed than 3.0"
+}
+
+# wait_for SECONDS WHAT COMMAND...
+wait_for() {
+  local deadline=$((SECONDS + $1)) what=$2
+  shift 2
+  until "$@" >/dev/null 2>&1; do
+    [ $SECONDS -lt $deadline ] || die "waited in vain for $what"
+    [ -z "$daemon" ] || kill -0 "$daemon" 2>/dev/null || die "the daemon ended while waiting for $what"
+    sleep 0.2
+  done
+}
+
+# The simulator stays outside; what it shows of itself, and the sensor's driver, are put into the root as a user would.
+bring_cell() {
+  local robots=$kBuild/share/calibrd/robots folder=$root/srv/cell
+  mkdir -p "$folder/openni/OpenNI2/Drivers"
+  cp -r "$robots/demo_arm7" "$folder/demo_arm7"
+  cp "$kBuild/lib/calibrd-sim-openni/OpenNI2/Drivers/libcalibrd_sim.so.0" "$folder/openni/OpenNI2/Drivers/"
+  ln -s "$(in_root sh -c 'ls /usr/lib/*/libOpenNI2.so.0')" "$folder/openni/libOpenNI2.so.0"
+  "$kBuild/bin/calibrd-sim" run --world config/demo_cell/world.json --urdf "$robots/demo_arm7/urdf/demo_arm7.urdf" \
+    --models "$robots" --world-file "$folder/world" --controller-port 0 --control-port 0 --ready-file "$work/ready" \
+    >/dev/null 2>"$work/simulator.log" &
+  pids+=($!)
+  wait_for 60 "the simulator" test -f "$work/ready"
+  chmod -R a+rX "$folder"
+  port=$(python3 -c 'import socket; print(socket.create_server(("127.0.0.1", 0)).getsockname()[1])')
+  # Edited as an integrator would: dpkg must leave it alone, and purge must remove it.
+  sed -i -e "s|^# port = 8080|port = $port|" -e 's|^urdf = .*|urdf = "/srv/cell/demo_arm7/urdf/demo_arm7.urdf"|' \
+    -e 's|^host = .*|host = "127.0.0.1"|' -e "s|^# port = 50241.*|port = $(sed -n 's/.*controller=127.0.0.1:\([0-9]*\).*/\1/p' "$work/ready")|" \
+    -e 's|^# uri = .*|driver_directory = "/srv/cell/openni"|' "$root/etc/calibrd/calibrd.toml"
+}
+
+run_daemon() {
+  say "the daemon runs as its user"
+  ! as_daemon "${kHealthcheck[@]}" 2>"$work/healthcheck.log" || die "something answers before the daemon runs"
+  as_daemon env CALIBRD_SIM_WORLD=/srv/cell/world /usr/bin/calibrd serve --config /etc/calibrd/calibrd.toml \
+    >"$work/daemon.log" 2>&1 &
+  daemon=$! && pids+=("$daemon")
+  wait_for 60 "life" as_daemon "${kHealthcheck[@]}"
+  wait_for 60 "robot and sensor" as_daemon "${kHealthcheck[@]}" --ready
+  for path in livez readyz; do
+    [ "$(curl -sS -o /dev/null -w '%{http_code}' "http://127.0.0.1:$port/$path")" = 200 ] || die "/$path is not 200"
+  done
+  [ "$(ps -o user:20=,group:20= -p "$daemon" | tr -s ' ')" != "root root" ] || die "it runs as root"
+  in_root stat -c %U /var/lib/calibrd/calibrd.db | grep -qx calibrd || die "it keeps no database of its own"
+  kill -TERM "$daemon"
+  wait "$daemon" || die "it did not end well"
+  daemon=''
+}
+
+purge() {
+  say "apt purges it"
+  rm -rf "$root/srv/cell"
+  in_root apt-get purge -y -qq calibrd >>"$work/apt.log" 2>&1 || die "apt could not purge it"
+  inventory >"$work/after"
+  diff "$work/before" "$work/after" >&2 || die "the purge left that (> new, < gone)"
+  if ! diff "$work/passwd" "$root/etc/passwd" >&2 || ! diff "$work/group" "$root/etc/group" >&2; then
+    die "its user is still there"
+  fi
+}
+
+case ${1:-} in '' | --keep | --build-only) ;; *) die "unknown option '$1'. Options: --keep, --build-only" ;; esac
+if [ "${1:-}" = --build-only ]; then
+  build
+  echo "$deb"
+  exit
+fi
+[ "$(id -u)" = 0 ] || die "a root of its own takes root: sudo scripts/test_package.sh"
+command -v debootstrap >/dev/null || die "no debootstrap: apt-get install debootstrap"
+[ "${1:-}" != --keep ] || keep=1
+work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-package.XXXXXX")
+root=$work/root
+trap clean_up EXIT
+trap 'exit 130' INT TERM
+build
+say "built $(basename "$deb"), $(($(stat -c %s "$deb") / 1024)) KiB"
+make_root
+install_package
+check_unit
+bring_cell
+run_daemon
+purge
+say "passed"
