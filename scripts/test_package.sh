@@ -12,6 +12,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly kBuild=build/${CALIBRD_PRESET:-release} kHealthcheck=(/usr/bin/calibrd healthcheck)
+readonly kEnvironment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
+readonly kAsDaemon=(setpriv --reuid calibrd --regid calibrd --init-groups --no-new-privs --inh-caps=-all)
 work='' root='' pids=() daemon=''
 
 say() { printf 'package: %4d s  %s\n' "$SECONDS" "$*" >&2; }
@@ -80,9 +82,9 @@ copy_apt_sources() {
   [ ! -f "$work/resolv.conf" ] || cp "$work/resolv.conf" "$root/etc/resolv.conf"
 }
 
-in_root() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$root" "$@"; }
+in_root() { env -i "${kEnvironment[@]}" chroot "$root" "$@"; }
 
-as_daemon() { in_root setpriv --reuid calibrd --regid calibrd --init-groups --no-new-privs --inh-caps=-all "$@"; }
+as_daemon() { in_root "${kAsDaemon[@]}" "$@"; }
 
 # Everything in the root but what packages' tools write for themselves.
 inventory() {
@@ -157,7 +159,9 @@ bring_cell() {
 run_daemon() {
   say "the daemon runs as its user"
   ! as_daemon "${kHealthcheck[@]}" 2>"$work/healthcheck.log" || die "something answers before the daemon runs"
-  as_daemon env CALIBRD_SIM_WORLD=/srv/cell/world /usr/bin/calibrd serve --config /etc/calibrd/calibrd.toml \
+  # Not by as_daemon: a function in the background is a shell, whose end is not the daemon's.
+  env -i "${kEnvironment[@]}" CALIBRD_SIM_WORLD=/srv/cell/world chroot "$root" "${kAsDaemon[@]}" \
+    /usr/bin/calibrd serve --config /etc/calibrd/calibrd.toml \
     >"$work/daemon.log" 2>&1 &
   daemon=$! && pids+=("$daemon")
   wait_for 60 "life" as_daemon "${kHealthcheck[@]}"
@@ -165,7 +169,7 @@ run_daemon() {
   for path in livez readyz; do
     [ "$(curl -sS -o /dev/null -w '%{http_code}' "http://127.0.0.1:$port/$path")" = 200 ] || die "/$path is not 200"
   done
-  [ "$(ps -o user:20=,group:20= -p "$daemon" | tr -s ' ')" != "root root" ] || die "it runs as root"
+  [ "$(stat -c %u "/proc/$daemon")" = "$(in_root id -u calibrd)" ] || die "it does not run as its user"
   in_root stat -c %U /var/lib/calibrd/calibrd.db | grep -qx calibrd || die "it keeps no database of its own"
   kill -TERM "$daemon"
   wait "$daemon" || die "it did not end well"
