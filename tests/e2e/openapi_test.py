@@ -11,7 +11,7 @@ import struct
 import subprocess
 import unittest
 
-from cell import BIN, SENSOR, Answer, CellTest, Daemon, wait_until
+from cell import BIN, BUILD, SENSOR, Answer, CellTest, Daemon, wait_until
 from contract import Contract
 
 POINTS = ("sensors.kinect2.workspace.tray=[0.5,0.0,0.1]", "sensors.kinect2.workspace.gripper=[0.4,-0.2,0.3]")
@@ -88,6 +88,8 @@ class OpenApi(CellTest):
         driven = {name for name, statuses in self.contract.seen.items() if statuses}
         self.assertEqual(driven, set(self.contract.operations))
         for name, statuses in self.contract.seen.items():
+            if name == "getPageFile" and not (BUILD / "share/calibrd/web").is_dir():
+                continue  # built without Node.js: there is no page
             self.assertTrue(any(status < "300" for status in statuses), f"{name} has never answered well: {statuses}")
 
     def before_calibration(self):
