@@ -13,7 +13,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CALIBRD_BUILD=${CALIBRD_BUILD:-$PWD/build/release}
 export CALIBRD_PAGE_OUT=${CALIBRD_PAGE_OUT:-$CALIBRD_BUILD/page}
 
+export CALIBRD_CHROMIUM=${CALIBRD_CHROMIUM:-/usr/bin/chromium}
+
+need_browser() {
+  [ -x "$CALIBRD_CHROMIUM" ] && return
+  echo "page.sh: skipped, there is no $CALIBRD_CHROMIUM: scripts/setup.sh --browser installs it, CALIBRD_CHROMIUM names another" >&2
+  exit 77 # what ctest takes for skipped
+}
+
 case ${1:-} in
+  test | figures | picture) need_browser ;;&
   test) exec node --test --test-reporter=spec web/tests/page.test.mjs ;;
   figures) exec node web/tests/figures.mjs "${2:-1}" ;;
   picture)

@@ -15,7 +15,7 @@ namespace json = boost::json;
 Response json_response(int status, const json::value& body) { return json_response(status, json_text(body)); }
 
 Response json_response(int status, std::string text) {
-  return {status, {{"Content-Type", "application/json"}, {"Cache-Control", "no-cache"}}, std::move(text)};
+  return {status, {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}}, std::move(text)};
 }
 
 Response problem(const Error& error) {

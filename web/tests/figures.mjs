@@ -7,7 +7,7 @@ import { Faults, keep, openBrowser, openPage, part, seriousFaults } from "./lib/
 import { BUILD, Cell, SENSOR, sleep, waitUntil } from "./lib/cell.mjs";
 
 const minutes = Number(process.argv[2] ?? 1);
-const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
+const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 function scriptKilobytes() {
   const assets = join(BUILD, "share/calibrd/web/assets");

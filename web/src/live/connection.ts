@@ -83,7 +83,8 @@ export class Connection {
       ending.abort();
       clearInterval(watch);
       clearInterval(refresh);
-      if (!document.hidden) this.noteLoss();
+      if (document.hidden) this.state.connection.value = { kind: "connecting" }; // whoever follows the state lets go as well
+      else this.noteLoss();
     }
   }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Calibration } from "../api/types";
 import { ask } from "../ui/dialog";
-import { h, setText } from "../ui/dom";
+import { h, setAttribute, setText } from "../ui/dom";
 import { type Context, perform, sensorPath } from "./context";
 
 /** What can be done with the chosen sensor; what the token does not allow is not there. */
@@ -19,7 +19,7 @@ export function actionsPanel(context: Context): HTMLElement {
     const key = `${context.state.session.value?.scope}`;
     if (key !== offered) buttons.replaceChildren(...offer(context));
     offered = key;
-    for (const button of buttons.querySelectorAll("button")) button.toggleAttribute("aria-disabled", !context.state.isLive);
+    for (const button of buttons.querySelectorAll("button")) setAttribute(button, "aria-disabled", String(!context.state.isLive));
     buttons.querySelector("[data-test=calibrate]")?.toggleAttribute("disabled", !context.state.isLive || !!sensor?.pose.job);
   };
   context.state.sensors.follow(refresh);
@@ -31,7 +31,7 @@ export function actionsPanel(context: Context): HTMLElement {
 
 function offer(context: Context): HTMLElement[] {
   const button = (name: string, title: string, action: (self: HTMLButtonElement) => Promise<void>, kind = ""): HTMLElement => {
-    const self: HTMLButtonElement = h("button", { class: kind, "data-test": name, click: () => void perform(context, self, () => action(self)) }, title);
+    const self: HTMLButtonElement = h("button", { class: kind, "data-test": name, click: () => context.state.isLive && void perform(context, self, () => action(self)) }, title);
     return self;
   };
   if (!context.state.may("calibrate"))

@@ -20,8 +20,8 @@ export class HistoryPanel {
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
-    const columns = ["", "Calibration", "Verdict", "σ position", "σ rotation", "Residual", "Coverage", ""];
-    const head = h("thead", {}, h("tr", {}, ...columns.map((title, at) => h("th", { scope: "col" }, title || h("span", { class: "unseen" }, at === 0 ? "compare" : "actions")))));
+    const columns = ["Calibration", "σ position, rotation", "Residual, coverage"];
+    const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "unseen" }, "compare")), ...columns.map((title) => h("th", { scope: "col" }, title))));
     this.element = h(
       "section",
       {},
@@ -59,13 +59,16 @@ export class HistoryPanel {
       "tr",
       { "data-id": id, "data-current": String(calibration.current), title: why },
       h("td", {}, choose),
-      h("td", {}, h("div", {}, when(calibration.created_at)), h("small", {}, id)),
-      h("td", { class: `verdict ${calibration.verdict ?? ""}` }, calibration.verdict ?? calibration.status, calibration.current ? h("strong", {}, " · served") : null),
-      h("td", {}, mm(result?.sigma_position_m)),
-      h("td", {}, mrad(result?.sigma_rotation_rad)),
-      h("td", {}, mm(result?.residual_rms_m)),
-      h("td", {}, percent(result?.coverage)),
-      h("td", {}, ...this.buttons(calibration)),
+      h(
+        "td",
+        {},
+        h("div", {}, when(calibration.created_at)),
+        h("small", {}, id),
+        h("div", { class: `verdict ${calibration.verdict ?? ""}` }, calibration.verdict ?? calibration.status, calibration.current ? h("strong", {}, " · served") : null),
+        ...this.buttons(calibration),
+      ),
+      h("td", {}, h("div", {}, mm(result?.sigma_position_m)), h("div", {}, mrad(result?.sigma_rotation_rad))),
+      h("td", {}, h("div", {}, mm(result?.residual_rms_m)), h("div", {}, percent(result?.coverage))),
     );
   }
 
