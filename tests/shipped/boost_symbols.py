@@ -41,13 +41,23 @@ def side_of(header: str, build: Path) -> str | None:
     return SYSTEM if path.startswith("/usr/include/boost/") else PRIVATE
 
 
-def sort_objects(ninja_deps: str, build: Path) -> BoostUse:
-    """Reads `ninja -t deps`: an object per paragraph, then an indented line per header."""
-    use = BoostUse([], [], [])
+def headers_of(ninja_deps: str, build: Path) -> dict[str, set[str]]:
+    """Reads `ninja -t deps`: an object per paragraph, then an indented line per header. Of a precompiled header an
+    object lists the name alone; what that has seen, the object has seen as well."""
+    found = {}
     for paragraph in ninja_deps.split("\n\n"):
         first, *headers = paragraph.strip().splitlines() or [""]
-        sides = {side_of(header.strip(), build) for header in headers} - {None}
-        name = first.split(":")[0]
+        found[first.split(":")[0]] = {header.strip() for header in headers}
+    precompiled = {os.path.normpath(build / name): headers for name, headers in found.items() if name.endswith(".gch")}
+    return {name: headers.union(*(precompiled.get(os.path.normpath(build / header), ()) for header in headers
+                                  if header.endswith(".gch")))
+            for name, headers in found.items() if not name.endswith(".gch")}
+
+
+def sort_objects(ninja_deps: str, build: Path) -> BoostUse:
+    use = BoostUse([], [], [])
+    for name, headers in headers_of(ninja_deps, build).items():
+        sides = {side_of(header, build) for header in headers} - {None}
         if sides == {SYSTEM, PRIVATE}:
             use.both.append(name)
         elif sides:

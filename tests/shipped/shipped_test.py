@@ -30,6 +30,16 @@ d.o: #deps 1, deps mtime 1 (VALID)
 
 e.o: #deps 1, deps mtime 1 (VALID)
     ../../usr/include/boost/config.hpp
+
+pch.hxx.gch: #deps 1, deps mtime 1 (VALID)
+    ../.deps/boost/usr/include/boost/json.hpp
+
+f.o: #deps 2, deps mtime 1 (VALID)
+    /src/build/pch.hxx.gch
+    /usr/include/boost/config.hpp
+
+g.o: #deps 1, deps mtime 1 (VALID)
+    pch.hxx.gch
 """
 
 DEPS_OF_TWO = ("theirs.o: #deps 1\\n    /usr/include/boost/version.hpp\\n\\n"
@@ -70,7 +80,7 @@ class LinkedLibraries(unittest.TestCase):
 class BoostSymbols(unittest.TestCase):
     def test_sorts_objects_by_the_boost_they_saw(self):
         use = sort_objects(DEPS, Path("/src/build"))
-        self.assertEqual((use.system, use.private, use.both), (["a.o", "e.o"], ["b.o"], ["c.o"]))
+        self.assertEqual((use.system, use.private, use.both), (["a.o", "e.o"], ["b.o", "g.o"], ["c.o", "f.o"]))
 
     def test_reads_weak_symbols_of_boost_alone(self):
         nm = "00 W _ZN5boost1fEv\n00 V _ZTIN5boost1AE\n00 u _ZN5boost1gE\n00 T _ZN5boost1hEv\n00 W _ZN3stdv\n"
