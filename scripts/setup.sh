@@ -88,9 +88,15 @@ as_root() {
   fi
 }
 
+# Once is enough: it takes longer than most packages do.
+update_lists() {
+  [ -z "${lists_are_new:-}" ] || return 0
+  as_root apt-get update -qq && lists_are_new=1
+}
+
 install_packages() {
   say "installing: $*"
-  as_root apt-get update -qq
+  update_lists
   as_root apt-get install -y -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" >&2
 }
 
@@ -101,7 +107,7 @@ unpack() {
   say "unpacking $* into $prefix"
   mkdir -p .deps
   work=$(mktemp -d "$prefix.XXXXXX")
-  download "$work" "$@" || { as_root apt-get update -qq && download "$work" "$@"; } ||
+  download "$work" "$@" || { update_lists && download "$work" "$@"; } ||
     die "could not download $*. Check the apt sources and the network, then run this again."
   for package in "$work"/*.deb; do dpkg -x "$package" "$work/root"; done
   if [ "$prefix" = $kPclPrefix ]; then install_pcl_library "$work"/libpcl-dev_*.deb; fi
