@@ -7,8 +7,8 @@
 
 namespace calibrd::api {
 
-/// What whoever asks may do, so that a page offers no more than that. Open: without a token, or with one that is not
-/// known, the answer is that nothing is allowed.
+/// What whoever asks may do, so that a page offers no more than that. Open: without a token, or with one that
+/// is not known, the answer is that nothing is allowed.
 void add_session_routes(Router& router) {
   router.add("GET", "/api/v1/session", Scope::open, Cost::quick,
              [](const Request& request, const PathValues&) {

@@ -26,6 +26,9 @@ constexpr int kClusterSide = 6;
 /// A cell whose depth differs by more is another surface.
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
+/// ... and one that differs by less is the one that is remembered, where the sensor is about where it was.
+constexpr float kAsItWas_m = 0.003F;
+constexpr float kAsItWasSigmas = 3;
 constexpr std::size_t kLeastCells = 150;
 /// Below this share of what could be seen the fit may be of anything.
 constexpr double kLeastShare = 0.35;
@@ -132,8 +135,22 @@ void BackgroundMatcher::sample(const DepthImage& depth) {
   }
 }
 
-void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const BackgroundVector& at,
-                                double kernel_m, Fit& fit) {
+/// Where hardly a cell is trusted, because something stood before the sensor and it may have been moved
+/// meanwhile, all are heard.
+void BackgroundMatcher::choose(std::span<const std::uint8_t> robot) {
+  speaks_.assign(depth_m_.size(), 0);
+  std::size_t measured = 0, trusted = 0;
+  for (const Row& row : rows_) {
+    if (depth_m_[row.cell] <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
+    ++measured;
+    speaks_[row.cell] = trust_.is_trusted(row.cell) ? 2 : 1;
+    if (speaks_[row.cell] == 2) ++trusted;
+  }
+  const bool are_enough = trusted >= kLeastCells && 2 * trusted >= measured;
+  for (std::uint8_t& speaks : speaks_) speaks = speaks > (are_enough ? 1 : 0) ? 1 : 0;
+}
+
+void BackgroundMatcher::collect(const BackgroundVector& at, double kernel_m, Fit& fit) {
   fit = {};
   fit.at = at;
   fit.tiles.resize(tiles_);
@@ -144,9 +161,8 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Backg
   {
     TileAdder sums(fit.tiles);
     for (const Row& row : rows_) {
-      const float z = depth_m_[row.cell];
-      if (z <= 0 || (!robot.empty() && robot[row.cell] != 0)) continue;
-      const float residual = z - map_.cells()[row.cell].depth_m - row.slope.dot(start);
+      if (speaks_[row.cell] == 0) continue;
+      const float residual = depth_m_[row.cell] - map_.cells()[row.cell].depth_m - row.slope.dot(start);
       if (std::abs(residual) < kFarKernel_m) ++fit.around;
       const double off = residual / kernel_m;
       if (std::abs(off) >= 1) continue;
@@ -170,22 +186,21 @@ void BackgroundMatcher::collect(std::span<const std::uint8_t> robot, const Backg
 
 /// From afar a post that is gone, a hand's breadth before the wall that was behind it, pulls the whole
 /// background along, and does not let go of it again: what stands is looked for first.
-BackgroundMatcher::Fit BackgroundMatcher::fit(std::span<const std::uint8_t> robot) {
-  Fit near = descend(robot, kNearKernel_m);
+BackgroundMatcher::Fit BackgroundMatcher::fit() {
+  Fit near = descend(kNearKernel_m);
   if (near.explains_most() && near.used >= kLeastCells) return near;
-  Fit far = descend(robot, kFarKernel_m);
+  Fit far = descend(kFarKernel_m);
   return far.used > near.used ? far : near;
 }
 
-BackgroundMatcher::Fit BackgroundMatcher::descend(std::span<const std::uint8_t> robot,
-                                                  double first_kernel_m) {
+BackgroundMatcher::Fit BackgroundMatcher::descend(double first_kernel_m) {
   BackgroundVector at = BackgroundVector::Zero();
   at[6] = last_offset_m_;
   const BackgroundVector vague = vague_information();
   double kernel_m = first_kernel_m;
   Fit fit;
   for (int i = 0; i < kSteps; ++i) {
-    collect(robot, at, kernel_m, fit);
+    collect(at, kernel_m, fit);
     if (fit.used < kLeastCells) return fit;
     fit.scatter = robust_sigma(whitened_);
     const double correlation = std::max(1.0, fit.cluster_squares / fit.squares);
@@ -249,10 +264,27 @@ void BackgroundMatcher::classify(std::span<const std::uint8_t> robot, const Fit&
   for (const Row& row : rows_) ++observation.counts[static_cast<std::size_t>(states_[row.cell])];
 }
 
+void BackgroundMatcher::follow_trust(const BackgroundObservation& observation) {
+  const auto offset = static_cast<float>(observation.known_offset_m());
+  for (const Row& row : rows_) {
+    const CellState state = states_[row.cell];
+    const bool is_away =
+        state == CellState::nearer || state == CellState::farther || state == CellState::dark;
+    const float change = depth_m_[row.cell] - map_.cells()[row.cell].depth_m - offset;
+    const bool is_as_it_was =
+        state == CellState::same && std::abs(change) < std::max(kAsItWas_m, kAsItWasSigmas * row.sigma_m);
+    if (is_away)
+      trust_.add(row.cell, CellTrust::Seen::something_else);
+    else if (is_as_it_was)
+      trust_.add(row.cell, CellTrust::Seen::as_it_was);
+  }
+}
+
 BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::span<const std::uint8_t> robot,
                                                const Eigen::Matrix3d& R_base_sensor) {
   sample(depth);
-  const Fit found = fit(robot);
+  choose(robot);
+  const Fit found = fit();
   BackgroundObservation observation;
   classify(robot, found, observation);
   observation.has_evidence = found.used >= kLeastCells && observation.share(CellState::same) >= kLeastShare;
@@ -267,6 +299,7 @@ BackgroundObservation BackgroundMatcher::match(const DepthImage& depth, std::spa
   observation.common_share = std::min(1.0, kUnmodelledShare + found.common / static_cast<double>(found.used));
   if (observation.has_evidence && std::abs(observation.known_offset_m()) < kFarKernel_m)
     last_offset_m_ = observation.known_offset_m();
+  if (!observation.unsupported) follow_trust(observation);
   return observation;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/drift/background_map.hpp"
+#include "core/drift/cell_trust.hpp"
 #include "core/drift/stands_within.hpp"
 #include "core/drift/window_support.hpp"
 #include "core/geometry/pose.hpp"
@@ -75,13 +76,14 @@ class BackgroundMatcher {
   explicit BackgroundMatcher(const BackgroundMap& map,
                              const Vector6d& tolerance = Vector6d::Constant(kStandsWithin))
       : map_(map), tolerance_(tolerance) {
-    refresh();
+    start_over();
   }
   /// To be called when parts of the map have changed ...
   void refresh();
   /// ... and when it is another one.
   void start_over() {
     last_offset_m_ = 0;
+    trust_.reset(map_.cells().size());
     refresh();
   }
 
@@ -105,10 +107,12 @@ class BackgroundMatcher {
   };
   struct Fit;
   void sample(const DepthImage& depth);
+  void choose(std::span<const std::uint8_t> robot);
+  void follow_trust(const BackgroundObservation& observation);
   void add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray);
-  Fit fit(std::span<const std::uint8_t> robot);
-  Fit descend(std::span<const std::uint8_t> robot, double first_kernel_m);
-  void collect(std::span<const std::uint8_t> robot, const BackgroundVector& at, double kernel_m, Fit& fit);
+  Fit fit();
+  Fit descend(double first_kernel_m);
+  void collect(const BackgroundVector& at, double kernel_m, Fit& fit);
   void classify(std::span<const std::uint8_t> robot, const Fit& fit, BackgroundObservation& observation);
 
   void find_support(const Fit& fit, const Matrix6d& turn, BackgroundObservation& observation) const;
@@ -120,6 +124,8 @@ class BackgroundMatcher {
       BackgroundMatrix::Zero();  // information that is but noise of the planes' normals
   std::size_t clusters_ = 0, tiles_ = 0;
   std::vector<float> depth_m_;
+  CellTrust trust_;
+  std::vector<std::uint8_t> speaks_;  // of the cells: measured in this frame, not the robot, trusted
   std::vector<CellState> states_;
   std::vector<float> whitened_;
   std::vector<double> pulls_;

@@ -65,18 +65,19 @@ void DriftWatch::absorb(double now_s) {
 /// A box that was pushed so little that its cells still look the same disputes where the sensor is. The robot
 /// has said since the dispute began that the sensor has not slid: so it is the box.
 void DriftWatch::absorb_what_was_pushed(double now_s) {
-  if (disputed_since_s_ < 0 || now_s - disputed_since_s_ < settings_.absorb_s) return;
-  if (!robot_word_.agrees_since(disputed_since_s_, now_s)) return;
+  if (!dispute_.is_open_for(settings_.absorb_s, now_s)) return;
+  if (!robot_word_.agrees_since(dispute_.since_s(), now_s)) return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
   const int width = map_.grid().width;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
     const bool is_seen = matcher_.states()[i] == CellState::same;
-    chosen[i] = is_seen && disputed_.holds(x, y) && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
+    chosen[i] =
+        is_seen && dispute_.window().holds(x, y) && scene_.mean_frames()[i] >= kLeastMeanFrames ? 1 : 0;
   }
   if (!take(chosen)) return;
-  followed_ += disputed_shift_;
-  disputed_since_s_ = -1;
+  followed_ += dispute_.turn_shift();
+  dispute_.settle();
 }
 
 /// A table with all that stands on it: what the robot denied to be the sensor's move is the background now.

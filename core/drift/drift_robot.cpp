@@ -10,9 +10,6 @@
 namespace calibrd {
 namespace {
 
-/// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
-/// the sensor has moved is not believed.
-constexpr double kDenial = 16;
 /// The sensor's own move may be what the robot shows when it leaves no more than this share of it (χ²)
 /// unexplained.
 constexpr double kUnexplainedShare = 0.4;
@@ -48,7 +45,7 @@ void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joint
 /// Along a direction that the background has hardly shown for long, or in which it was learnt anew, where
 /// only the robot can tell. Elsewhere a shift so small is the model's.
 bool DriftWatch::has_crept() const {
-  const bool is_shown = has_background() && frame_s_ - finely_pinned_s_ < kUnpinned_s;
+  const bool is_shown = has_background() && word_.pins_finely_within(kUnpinned_s, frame_s_);
   const auto creep = robot_word_.creep();
   if (!creep || (is_shown && !is_what_was_followed(*creep))) return false;
   return is_robots_shift_possible({&*creep, 1});
@@ -67,24 +64,25 @@ bool DriftWatch::is_what_was_followed(const RobotShift& robot) const {
   return left.dot(solver.solve(left)) < kUnexplainedShare * std::pow(robot.sigmas, 2);
 }
 
-/// For each hypothesis how badly the robot's apparent shift fits it.
-bool DriftWatch::robot_denies_the_shift(double now_s) const {
+/// By how much (−2 log likelihood) the robot, seen since the test began to rise, speaks for standing still
+/// rather than for the move that the background shows; 0: it has not been seen.
+double DriftWatch::robots_preference(double now_s) const {
   const double onset_s = test_.run_length() / settings_.shift.rate_hz;
-  if (!robot_word_.agrees_within(std::min(RobotWord::kOfNow_s, onset_s), now_s)) return false;
+  if (!robot_word_.has_spoken_within(std::min(RobotWord::kOfNow_s, onset_s), now_s)) return 0;
   const PoseCheck& check = *robot_word_.newest();
   const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_ * map_.middle_sensor());
   const Vector6d moved = move * test_.mean(), seen = check.turn_shift;
   const Eigen::LDLT<Matrix6d> solver(check.turn_shift_covariance);
-  const double stands = seen.dot(solver.solve(seen));
   const Vector6d off = seen - moved;
-  return stands + kDenial < off.dot(solver.solve(off));
+  const double preference = off.dot(solver.solve(off)) - seen.dot(solver.solve(seen));
+  return check.agrees ? preference : std::min(preference, 0.0);
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.
 bool DriftWatch::is_robots_shift_possible(std::span<const RobotShift> postures) const {
   if (!has_background() || frame_s_ - evidence_s_ >= kEvidence_s || !last_covariance_) return true;
   if (postures.empty())
-    return frame_s_ - pinned_s_ >= kEvidence_s || test_.statistic() > 0.5 * test_.threshold();
+    return !word_.pins_within(kEvidence_s, frame_s_) || test_.statistic() > 0.5 * test_.threshold();
   return is_one_move(postures);
 }
 

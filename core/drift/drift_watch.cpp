@@ -20,7 +20,11 @@ constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
 constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
 /// A background that shows every direction so well finds a creep by itself before it is worth a word.
 constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
-constexpr double kNewestDisputed = 1.0 / 30;  // weight of a frame in the mean of a disputed shift
+/// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
+/// the sensor has moved is not believed, or for the move before it is believed at once.
+constexpr double kDenial = 16;
+/// The robot is asked ten times a second; one that works mostly answers within this.
+constexpr double kAnswer_s = 0.5;
 constexpr double kRobotHolds_s = 10;
 constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
@@ -66,12 +70,14 @@ void DriftWatch::start_over() {
   matcher_.start_over();
   scene_.reset();
   test_.reset();
+  word_.reset();
+  dispute_.reset();
   T_learnt_now_.reset();
   robot_word_.reset();
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
   quiet_frames_ = 0;
-  lost_since_s_ = offset_over_s_ = learnt_s_ = disputed_since_s_ = -1;
-  evidence_s_ = pinned_s_ = finely_pinned_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
+  lost_since_s_ = offset_over_s_ = learnt_s_ = alarmed_since_s_ = -1;
+  evidence_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   followed_.setZero();
   absorbed_s_ = frame_s_;
@@ -123,18 +129,39 @@ void DriftWatch::test(const BackgroundObservation& observation) {
                  move * observation.supported_shift,
                  move * observation.supported_covariance * move.transpose(), observation.common_share};
   test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
+  if (test_.run_length() <= 1) was_open_ = !word_.pins_within(kEvidence_s, frame_s_);
   const auto& supported = innovation_->supported_covariance;
   const bool is_pinned = pins(supported, settings_.pinned_m, settings_.pinned_rad);
-  if (is_pinned) pinned_s_ = frame_s_;
-  if (pins(supported, kFinely_m, kFinely_rad)) finely_pinned_s_ = frame_s_;
-  follow_dispute(observation,
-                 !is_pinned && pins(innovation_->covariance, settings_.pinned_m, settings_.pinned_rad));
+  word_.add(is_pinned, pins(supported, kFinely_m, kFinely_rad), frame_s_);
+  const bool is_disputed =
+      !is_pinned && pins(innovation_->covariance, settings_.pinned_m, settings_.pinned_rad);
+  if (is_disputed && observation.unsupported)
+    dispute_.add(*observation.unsupported, innovation_->turn_shift, frame_s_);
+  else
+    dispute_.add_none(frame_s_);
   count_quiet();
   last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
-  if (!test_.is_alarmed() || moved_) return;
-  if (robot_denies_the_shift(frame_s_)) return on_denial();
+  raise_alarm();
+}
+
+void DriftWatch::on_gap() {
+  quiet_frames_ = 0;
+  word_.on_gap();
+}
+
+/// What the background shows in a direction that it left open until just now may be a large thing that was
+/// pushed along it: the robot is heard first, if it has something to say.
+void DriftWatch::raise_alarm() {
+  if (!test_.is_alarmed() || moved_) {
+    alarmed_since_s_ = -1;
+    return;
+  }
+  if (alarmed_since_s_ < 0) alarmed_since_s_ = frame_s_;
+  const double preference = robots_preference(frame_s_);
+  if (preference > kDenial) return on_denial();
+  if (preference > -kDenial && was_open_ && frame_s_ - alarmed_since_s_ < kAnswer_s) return;
   moved_ = true;
 }
 
@@ -144,21 +171,6 @@ bool DriftWatch::pins(const Matrix6d& covariance, double within_m, double within
   const double tolerated = 1 + ShiftTest::kCommonSigmas * std::sqrt(innovation_->common_share);
   return tolerated * worst_sigma(covariance.topLeftCorner<3, 3>()) < within_rad &&
          tolerated * worst_sigma(covariance.bottomRightCorner<3, 3>()) < within_m;
-}
-
-/// A shift that one thing in view alone shows: either it was pushed, or the sensor has slid.
-void DriftWatch::follow_dispute(const BackgroundObservation& observation, bool is_disputed) {
-  if (!is_disputed || !observation.unsupported) {
-    if (frame_s_ - disputed_s_ > kEvidence_s) disputed_since_s_ = -1;
-    return;
-  }
-  disputed_ = *observation.unsupported;
-  disputed_s_ = frame_s_;
-  if (disputed_since_s_ < 0) {
-    disputed_since_s_ = frame_s_;
-    disputed_shift_ = innovation_->turn_shift;
-  }
-  disputed_shift_ += kNewestDisputed * (innovation_->turn_shift - disputed_shift_);
 }
 
 /// Frames on end that show the background where it was. The sequential test needs some frames to find a move,
@@ -234,13 +246,13 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
 }
 
 bool DriftWatch::is_in_place() const {
-  return has_background() && !moved_ && frame_s_ - pinned_s_ < kEvidence_s && !is_doubtful() &&
+  return has_background() && !moved_ && word_.pins_within(kEvidence_s, frame_s_) && !is_doubtful() &&
          quiet_frames_ >= kQuietFrames;
 }
 
 /// Something has said just now that the sensor stands, in every direction.
 bool DriftWatch::is_known_to_stand() const {
-  return frame_s_ - pinned_s_ < kEvidence_s || robot_word_.agrees_within(RobotWord::kOfNow_s, frame_s_);
+  return word_.pins_within(kEvidence_s, frame_s_) || robot_word_.agrees_within(RobotWord::kOfNow_s, frame_s_);
 }
 
 /// A wall leaves directions open: of these the robot's word holds longer, while it works and the wall stands.
@@ -250,7 +262,7 @@ bool DriftWatch::is_seen() const {
 }
 
 bool DriftWatch::is_out_of_sight() const {
-  const bool is_disputed = disputed_since_s_ >= 0 && frame_s_ - disputed_since_s_ > kOutOfSight_s;
+  const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_);
   const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s;
   return has_background() && (is_disputed || is_nowhere) &&
          !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);

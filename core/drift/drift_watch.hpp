@@ -8,9 +8,11 @@
 #include "core/calibration/check_pose.hpp"
 #include "core/drift/background_align.hpp"
 #include "core/drift/background_match.hpp"
+#include "core/drift/background_word.hpp"
 #include "core/drift/drift_report.hpp"
 #include "core/drift/robot_word.hpp"
 #include "core/drift/scene_change.hpp"
+#include "core/drift/shift_dispute.hpp"
 #include "core/drift/shift_test.hpp"
 
 namespace calibrd {
@@ -53,7 +55,7 @@ class DriftWatch {
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
   bool wants_check() const {
-    const bool is_disputed = disputed_since_s_ >= 0 && !robot_word_.agrees_within(kEvidence_s, frame_s_);
+    const bool is_disputed = dispute_.is_open() && !robot_word_.agrees_within(kEvidence_s, frame_s_);
     return is_doubtful() || is_disputed || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
   }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
@@ -61,8 +63,11 @@ class DriftWatch {
   /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden,
   /// dark or elsewhere, or one thing in view says that it has slid; and the robot has not spoken.
   bool is_out_of_sight() const;
+  /// Postures on end have spoken against pose and model, and the background does not show that it is the
+  /// model: while that lasts no posture that agrees makes the pose good.
+  bool is_contested() const { return model_wrong_ && !word_.pins_within(kEvidence_s, frame_s_); }
   /// The sensor was away: what was seen before says nothing of where it is now.
-  void on_gap() { quiet_frames_ = 0; }
+  void on_gap();
 
   const BackgroundMap& background() const { return map_; }
   const BackgroundMatcher& matcher() const { return matcher_; }
@@ -83,7 +88,7 @@ class DriftWatch {
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
   bool pins(const Matrix6d& covariance, double within_m, double within_rad) const;
-  void follow_dispute(const BackgroundObservation& observation, bool is_disputed);
+  void raise_alarm();
   void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
   void follow_loss(const BackgroundObservation& observation, double now_s);
@@ -96,7 +101,7 @@ class DriftWatch {
   void describe(const BackgroundObservation& observation);
   void judge(double now_s);
   void on_denial();
-  bool robot_denies_the_shift(double now_s) const;
+  double robots_preference(double now_s) const;
   bool is_robots_shift_possible(std::span<const RobotShift> postures) const;
   bool is_one_move(std::span<const RobotShift> postures) const;
   bool has_crept() const;
@@ -127,15 +132,13 @@ class DriftWatch {
   int frames_ = 0, quiet_frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, lost_s_ = -1e9, absorbed_s_ = 0,
          learnt_s_ = -1;
-  double disputed_since_s_ = -1,
-         disputed_s_ = -1e9;  // a shift without support shows, in the window disputed_
-  CellWindow disputed_;
-  Vector6d disputed_shift_ = Vector6d::Zero();  // mean of the last frames: turn and shift of the middle
+  BackgroundWord word_;
+  ShiftDispute dispute_;
+  bool was_open_ = false;        // the background left a direction open before the test began to rise
+  double alarmed_since_s_ = -1;  // the test would alarm
   /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
   /// of the middle of the background.
   Vector6d followed_ = Vector6d::Zero();
-  double pinned_s_ = -1e9;                          // last time the background showed every direction ...
-  double finely_pinned_s_ = -1e9;                   // ... and so well that it would tell of a creep itself
   double denied_s_ = -1e9, denied_since_s_ = -1e9;  // the robot said that the sensor stands
   double in_front_s_ = -1e9;                        // last time something was
   double offset_m_ = 0, offset_over_s_ = -1, offset_sigma_m_ = 0;

@@ -21,8 +21,8 @@ struct RobotShift {
 /// How far off the robot looks, as one shift of the sensor that all of the last postures share: what joint
 /// zeros and model make of one posture averages out over many, so that less shows than in one. Only
 /// postures that differ count, each once and by what it tells of each direction: of a robot that goes to and
-/// fro between a few, what the model makes of them stays. What is older than an hour says nothing of now. Without
-/// I/O.
+/// fro between a few, what the model makes of them stays. What is older than an hour says nothing of now.
+/// Without I/O.
 class PostureMean {
  public:
   /// A comparison of the posture that the robot stands in.

@@ -25,6 +25,8 @@ class RobotWord {
   bool agrees_since(double since_s, double now_s) const;
   /// The newest one agrees and is not older than this.
   bool agrees_within(double seconds, double now_s) const;
+  /// There is one that is not older than this.
+  bool has_spoken_within(double seconds, double now_s) const { return newest_ && age_s(now_s) < seconds; }
   /// The newest one disagrees, and is of this very moment.
   bool is_off(double now_s) const;
 

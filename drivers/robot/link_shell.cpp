@@ -85,7 +85,8 @@ void LinkShell::start_over(const char* what) {
     try {
       return obey(machine_.on_trouble(what, Clock::now()));
     } catch (const std::bad_alloc&) {
-      if (attempt == kAttempts) throw;  // nothing can be done here any more: whoever watches starts calibrd anew
+      if (attempt == kAttempts)
+        throw;  // nothing can be done here any more: whoever watches starts calibrd anew
     }
     std::this_thread::sleep_for(kPause);
   }

@@ -58,7 +58,8 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
      "this computer was too busy to read the robot for seconds; joints of unknown age were dropped, "
      "reconnecting. Give calibrd more processor time"},
     {out_of_resources,
-     "this computer had no memory or no thread left for the link; reconnecting. Look for what uses them up, or "
+     "this computer had no memory or no thread left for the link; reconnecting. Look for what uses them up, "
+     "or "
      "raise the limits of calibrd"},
 
     {joints_missing,

@@ -144,8 +144,8 @@ void SensorProcess::supervise() {
   }
 }
 
-/// What was under way is not known any more; so the process is ended, and started anew after the usual pause. Takes no
-/// memory.
+/// What was under way is not known any more; so the process is ended, and started anew after the usual pause.
+/// Takes no memory.
 void SensorProcess::start_over(SupervisorMachine& machine, std::optional<ChildProcess>& child) const {
   child.reset();
   machine.on_spawn_failed(sensor_error(SensorError::system_refused), Clock::now());

@@ -33,7 +33,7 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   has_pose_ = true;
   newest_ = {};
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
-  in_place_ = wants_check_ = out_of_sight_ = false;
+  in_place_ = wants_check_ = out_of_sight_ = contested_ = false;
   frames_seen_ = 0;
 }
 
@@ -76,6 +76,7 @@ void DriftMonitor::add_frame(const View& frame) {
   in_place_ = watch_->is_in_place();
   wants_check_ = watch_->wants_check();
   out_of_sight_ = watch_->is_out_of_sight();
+  contested_ = watch_->is_contested();
   stamp_ = time_of(frame.stamp_s);
 }
 
@@ -101,6 +102,8 @@ void DriftMonitor::add_check(const View& frame, const PoseCheck& check) {
   watch_->add_check(check, frame.joint_positions_rad, frame.stamp_s);
   if (check.enough_evidence && !check.agrees) passed_.clear();
   if (check.agrees && !watch_->has_background()) keep_for_background(frame);
+  const std::lock_guard lock(mutex_);
+  if (!order_) contested_ = watch_->is_contested();
 }
 
 void DriftMonitor::keep_for_background(const View& frame) {
@@ -136,6 +139,11 @@ bool DriftMonitor::is_in_place() const {
 bool DriftMonitor::is_out_of_sight() const {
   const std::lock_guard lock(mutex_);
   return out_of_sight_;
+}
+
+bool DriftMonitor::is_contested() const {
+  const std::lock_guard lock(mutex_);
+  return contested_;
 }
 
 bool DriftMonitor::wants_check() const {

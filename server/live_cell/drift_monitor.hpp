@@ -33,6 +33,8 @@ class DriftMonitor {
   bool is_in_place() const;
   /// As DriftWatch::is_out_of_sight(), of the last frame.
   bool is_out_of_sight() const;
+  /// As DriftWatch::is_contested(), of the last frame or check.
+  bool is_contested() const;
   bool wants_check() const;
   /// Enough frames were seen since the pose was set, or the sensor was back, for a moved sensor to show; also
   /// while no background is known that could tell. Before, a check against the robot proves too little.
@@ -66,7 +68,7 @@ class DriftMonitor {
   bool has_pose_ = false;
   DriftReport newest_;
   std::shared_ptr<const BackgroundMap> background_;
-  bool in_place_ = false, wants_check_ = false, out_of_sight_ = false;
+  bool in_place_ = false, wants_check_ = false, out_of_sight_ = false, contested_ = false;
   int frames_seen_ = 0;  // since the pose was set, or the sensor lost
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it

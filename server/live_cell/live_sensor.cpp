@@ -145,8 +145,8 @@ void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
   for (const auto& task : tasks) is_of_use ? task->offer(sighting.view) : task->interrupt();
 }
 
-/// A sensor that was away, if only for a restart of its process, may have been moved. One whose frames are all the
-/// same, or out of order, tells as little as one that sends none.
+/// A sensor that was away, if only for a restart of its process, may have been moved. One whose frames are
+/// all the same, or out of order, tells as little as one that sends none.
 void LiveSensor::notice_loss(const SensorHealth& health) {
   const bool away =
       health.state != SensorHealth::State::streaming || Clock::now() - entered_at_ > kBlindAfter;

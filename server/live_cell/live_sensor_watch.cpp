@@ -24,7 +24,9 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (has_moved && !has_moved_) moved_at_ = Clock::now();
   has_moved_ = has_moved;
   if (has_moved) watch_.on_sensor_moved();
-  // While a single thing shows a slide, a frame whose noise hides that slide proves nothing: so this comes first.
+  watch_.on_contested(monitor_->is_contested());
+  // While a single thing shows a slide, a frame whose noise hides that slide proves nothing: so this comes
+  // first.
   if (monitor_->is_out_of_sight())
     watch_.on_view_lost();
   else if (monitor_->is_in_place())
@@ -80,6 +82,7 @@ void LiveSensor::check(const Sighting& sighting) {
   if (number != pose_number_) return;
   if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
+  if (monitor_) watch_.on_contested(monitor_->is_contested());
   watch_.on_check(checked, sighting.stamp);  // not now: a check proves nothing of later than its frame
   forget_evidence(was_plausible);
 }

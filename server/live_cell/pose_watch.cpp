@@ -50,10 +50,18 @@ void PoseWatch::on_view_lost() {
 void PoseWatch::on_background_in_place(Clock::time_point now) {
   in_place_at_ = now;
   const bool returned =
-      state_ == PoseState::unverified && (doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost);
+      state_ == PoseState::unverified &&
+      (doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost || doubt_ == Doubt::contested);
   if (!objection_.empty() || (state_ != PoseState::calibrated && !returned)) return;
   state_ = PoseState::calibrated;
   passed_at_ = now;
+}
+
+void PoseWatch::on_contested(bool is_contested) {
+  is_contested_ = is_contested;
+  if (!is_contested || state_ != PoseState::calibrated) return;
+  state_ = PoseState::unverified;
+  doubt_ = Doubt::contested;
 }
 
 void PoseWatch::on_sensor_moved() {
@@ -65,7 +73,8 @@ void PoseWatch::on_sensor_moved() {
 bool PoseWatch::is_check_due(Clock::time_point now) const {
   if (state_ == PoseState::uncalibrated) return false;
   const bool settled = state_ != PoseState::unverified || doubt_ == Doubt::restored ||
-                       doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost;
+                       doubt_ == Doubt::sensor_lost || doubt_ == Doubt::view_lost ||
+                       doubt_ == Doubt::contested;
   return !checked_at_ || now - *checked_at_ >= (settled ? settings_.check_period : settings_.recheck_period);
 }
 
@@ -76,6 +85,7 @@ void PoseWatch::on_check(const PoseCheck& check, Clock::time_point now) {
   evidence_at_ = now;
   last_ = check;
   if (!objection_.empty() || state_ == PoseState::drifted) return;
+  if (check.agrees && is_contested_) return;
   check.agrees ? agree(now) : disagree(now);
 }
 
@@ -101,7 +111,8 @@ std::string PoseWatch::doubt() const {
   if (!objection_.empty()) return objection_;
   switch (doubt_) {
     case Doubt::sensor_lost:
-      return "the sensor was lost, sends nothing new, or has moved since the pose was found; the pose is checked "
+      return "the sensor was lost, sends nothing new, or has moved since the pose was found; the pose is "
+             "checked "
              "when frames come and the robot holds still in view";
     case Doubt::view_lost:
       return "for a while the sensor has seen neither the background nor the robot where the pose says; "
@@ -111,6 +122,10 @@ std::string PoseWatch::doubt() const {
     case Doubt::robot_off:
       return "the sensor stands, but the robot is not where its joints and the pose put it: check joint "
              "zeros, the robot's base and the model; further checks follow at once";
+    case Doubt::contested:
+      return "the robot has looked off in several postures, and the background does not tell whether it is "
+             "the robot's "
+             "model or the sensor; check joint zeros, the robot's base and the model, or calibrate again";
     case Doubt::restored:
       break;
   }

@@ -45,6 +45,9 @@ class PoseWatch {
   /// Neither the background nor the robot has been seen where the pose says for a while: a valid pose is
   /// unverified until one of them is.
   void on_view_lost();
+  /// Postures on end have spoken against the pose, and the background does not say that it is the robot's
+  /// model: a posture that agrees proves nothing until that ends.
+  void on_contested(bool is_contested);
   /// The background says that the sensor has moved.
   void on_sensor_moved();
 
@@ -70,9 +73,10 @@ class PoseWatch {
 
   PoseWatchSettings settings_;
   api::PoseState state_ = api::PoseState::uncalibrated;
-  enum class Doubt { restored, sensor_lost, view_lost, disagreement, robot_off };
+  enum class Doubt { restored, sensor_lost, view_lost, disagreement, robot_off, contested };
   Doubt doubt_ = Doubt::restored;  // why it is unverified
   std::string objection_;
+  bool is_contested_ = false;
   int disagreements_ = 0;  // in a row
   Clock::time_point disagrees_since_;
   enum class Drift { background_moved, robot_off, stored };

@@ -128,14 +128,13 @@ Status CalibrationStore::insert_drift(const std::string& calibration_id) {
 /// Of the same sensor: all but the newest, and that of the current pose.
 Status CalibrationStore::drop_old_backgrounds(const std::string& calibration_id) {
   constexpr int kKept = 200;  // kOldBackgroundsMayGo guards as many
-  Statement remove(
-      *database_,
-      "DELETE FROM backgrounds WHERE calibration_id IN (SELECT c.id FROM calibrations c "
-      "JOIN backgrounds b ON b.calibration_id = c.id "
-      "WHERE c.sensor_id = (SELECT sensor_id FROM calibrations WHERE id = ?) "
-      "ORDER BY c.number DESC LIMIT -1 OFFSET ?) AND calibration_id NOT IN "
-      "(SELECT calibration_id FROM activations "
-      "WHERE number IN (SELECT MAX(number) FROM activations GROUP BY sensor_id))");
+  Statement remove(*database_,
+                   "DELETE FROM backgrounds WHERE calibration_id IN (SELECT c.id FROM calibrations c "
+                   "JOIN backgrounds b ON b.calibration_id = c.id "
+                   "WHERE c.sensor_id = (SELECT sensor_id FROM calibrations WHERE id = ?) "
+                   "ORDER BY c.number DESC LIMIT -1 OFFSET ?) AND calibration_id NOT IN "
+                   "(SELECT calibration_id FROM activations "
+                   "WHERE number IN (SELECT MAX(number) FROM activations GROUP BY sensor_id))");
   remove.bind(calibration_id).bind(kKept).next();
   return remove.status(StorageError::cannot_write);
 }

@@ -31,8 +31,8 @@ class RunningCell {
  public:
   static constexpr double kRate_hz = 30;
 
-  /// `scene` must outlive it. The robot visits the postures of the scene's truth, more than there are views of, holding
-  /// still for a second at each.
+  /// `scene` must outlive it. The robot visits the postures of the scene's truth, more than there are views
+  /// of, holding still for a second at each.
   RunningCell(const Scene& scene, std::shared_ptr<const sim::SensorTables> tables, std::uint64_t seed);
 
   struct Frame {

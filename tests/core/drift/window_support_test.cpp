@@ -139,6 +139,74 @@ TEST_F(TwoBoxes, TogetherShowAMoveAlongThatDirection) {
   EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
 }
 
+/// Both boxes, the last blocks of the room.
+class TakenBoxes : public TwoBoxes {
+ protected:
+  void push(double way_m) {
+    for (auto block = room_.blocks.end() - 2; block != room_.blocks.end(); ++block)
+      block->middle.x() += way_m;
+  }
+  static constexpr double kOutOfView_m = 30;
+};
+
+TEST_F(TakenBoxes, ThatComeBackElsewhereAreNoMove) {
+  watch_for(4);
+  push(kOutOfView_m);
+  watch_for(3);
+  push(0.015 - kOutOfView_m);
+  watch_for(2);
+  EXPECT_EQ(moved_at_frame_, -1);
+  moved_.tail<3>() = 0.003 * true_T_base_sensor().linear().col(1);
+  EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved) << "wall and floor tell of it";
+}
+
+TEST_F(TakenBoxes, ThatStandWhereTheyStoodSpeakAgain) {
+  watch_for(4);
+  push(kOutOfView_m);
+  watch_for(3);
+  push(-kOutOfView_m);
+  watch_for(2);
+  moved_.tail<3>() = kPushed_m * true_T_base_sensor().linear().col(0);
+  EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
+}
+
+/// Nothing was seen for a while; then both boxes show a slide.
+class SlideAfterDark : public TakenBoxes {
+ protected:
+  void darken() {
+    watch_for(4);
+    dark_share_ = 0.9;
+    watch_for(3);
+    dark_share_ = 0;
+  }
+};
+
+TEST_F(SlideAfterDark, IsAMoveWhenTheRobotHasNothingToSay) {
+  darken();
+  push(kPushed_m);
+  EXPECT_NE(watch_for(0.4), DriftVerdict::sensor_moved);
+  EXPECT_TRUE(watch_.wants_check());
+  EXPECT_FALSE(watch_.is_in_place());
+  EXPECT_EQ(watch_for(0.8), DriftVerdict::sensor_moved);
+}
+
+TEST_F(SlideAfterDark, IsNoneWhenTheRobotDeniesItInTime) {
+  darken();
+  push(kPushed_m);
+  watch_for(0.3);
+  check(Vector6d::Zero());
+  watch_for(1);
+  EXPECT_EQ(moved_at_frame_, -1);
+}
+
+TEST_F(SlideAfterDark, IsAMoveAtOnceWhenTheRobotSaysSo) {
+  darken();
+  moved_.tail<3>() = kPushed_m * true_T_base_sensor().linear().col(0);
+  watch_for(0.3);
+  check(moved_);
+  EXPECT_EQ(watch_for(0.1), DriftVerdict::sensor_moved);
+}
+
 TEST_F(PushedBox, AMoveThatWallAndFloorShowIsFound) {
   watch_for(4);
   moved_.tail<3>() = 0.003 * true_T_base_sensor().linear().col(1);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// The functions of the C library under their own names: the program's come before the library's, for every object in it.
+// The functions of the C library under their own names: the program's come before the library's, for every
+// object in it.
 #include "tests/drivers/faults/call_faults.hpp"
 
 #include <dlfcn.h>
@@ -46,10 +47,11 @@ Function* real(Function*, const char* name) {
 }  // namespace
 
 const char* name_of(Call call) {
-  constexpr std::array kNames{"socket",      "connect",   "getsockopt", "setsockopt",     "ioctl",      "getsockname",
-                              "getpeername", "epoll_ctl", "epoll_wait", "recvmsg",        "poll",       "getaddrinfo",
-                              "pthread",     "eventfd",   "memfd",      "ftruncate",      "fstat",      "fcntl",
-                              "mmap",        "socketpair", "spawn",     "recv",           "waitpid",    "allocation"};
+  constexpr std::array kNames{"socket",      "connect",     "getsockopt", "setsockopt", "ioctl",
+                              "getsockname", "getpeername", "epoll_ctl",  "epoll_wait", "recvmsg",
+                              "poll",        "getaddrinfo", "pthread",    "eventfd",    "memfd",
+                              "ftruncate",   "fstat",       "fcntl",      "mmap",       "socketpair",
+                              "spawn",       "recv",        "waitpid",    "allocation"};
   return kNames.at(static_cast<std::size_t>(call));
 }
 
@@ -75,28 +77,32 @@ using calibrd::faults::fails_now;
 using calibrd::faults::real;
 
 // One that tells of a failure by -1 and errno.
-#define CALIBRD_FAULTY(name, parameters, ...)                         \
-  int name parameters {                                               \
-    static const auto next = real(&::name, #name);                    \
-    return fails_now(Call::name) ? -1 : next(__VA_ARGS__);            \
+#define CALIBRD_FAULTY(name, parameters, ...)              \
+  int name parameters {                                    \
+    static const auto next = real(&::name, #name);         \
+    return fails_now(Call::name) ? -1 : next(__VA_ARGS__); \
   }
 
 extern "C" {
 
 CALIBRD_FAULTY(socket, (int family, int type, int protocol) noexcept, family, type, protocol)
 CALIBRD_FAULTY(connect, (int fd, const sockaddr* address, socklen_t size), fd, address, size)
-CALIBRD_FAULTY(getsockopt, (int fd, int level, int name, void* value, socklen_t* size) noexcept, fd, level, name, value, size)
-CALIBRD_FAULTY(setsockopt, (int fd, int level, int name, const void* value, socklen_t size) noexcept, fd, level, name, value, size)
+CALIBRD_FAULTY(getsockopt, (int fd, int level, int name, void* value, socklen_t* size) noexcept, fd, level,
+               name, value, size)
+CALIBRD_FAULTY(setsockopt, (int fd, int level, int name, const void* value, socklen_t size) noexcept, fd,
+               level, name, value, size)
 CALIBRD_FAULTY(getsockname, (int fd, sockaddr* address, socklen_t* size) noexcept, fd, address, size)
 CALIBRD_FAULTY(getpeername, (int fd, sockaddr* address, socklen_t* size) noexcept, fd, address, size)
 CALIBRD_FAULTY(epoll_ctl, (int epoll, int what, int fd, epoll_event* event) noexcept, epoll, what, fd, event)
-CALIBRD_FAULTY(epoll_wait, (int epoll, epoll_event* events, int most, int timeout), epoll, events, most, timeout)
-CALIBRD_FAULTY(poll, (pollfd* fds, nfds_t count, int timeout), fds, count, timeout)
+CALIBRD_FAULTY(epoll_wait, (int epoll, epoll_event* events, int most, int timeout), epoll, events, most,
+               timeout)
+CALIBRD_FAULTY(poll, (pollfd * fds, nfds_t count, int timeout), fds, count, timeout)
 CALIBRD_FAULTY(eventfd, (unsigned count, int flags) noexcept, count, flags)
 CALIBRD_FAULTY(memfd_create, (const char* name, unsigned flags) noexcept, name, flags)
 CALIBRD_FAULTY(ftruncate, (int fd, off_t size) noexcept, fd, size)
 CALIBRD_FAULTY(fstat, (int fd, struct stat* status) noexcept, fd, status)
-CALIBRD_FAULTY(socketpair, (int family, int type, int protocol, int* pair) noexcept, family, type, protocol, pair)
+CALIBRD_FAULTY(socketpair, (int family, int type, int protocol, int* pair) noexcept, family, type, protocol,
+               pair)
 CALIBRD_FAULTY(waitpid, (pid_t id, int* status, int options), id, status, options)
 
 ssize_t recvmsg(int fd, msghdr* message, int flags) {
@@ -138,13 +144,14 @@ int getaddrinfo(const char* host, const char* service, const addrinfo* hints, ad
   return fails_now(Call::getaddrinfo) ? errno : next(host, service, hints, found);
 }
 
-int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*), void* argument) noexcept {
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) noexcept {
   static const auto next = real(&::pthread_create, "pthread_create");
   return fails_now(Call::pthread_create) ? errno : next(thread, attributes, start, argument);
 }
 
-int posix_spawn(pid_t* id, const char* path, const posix_spawn_file_actions_t* files, const posix_spawnattr_t* attributes,
-                char* const* arguments, char* const* variables) {
+int posix_spawn(pid_t* id, const char* path, const posix_spawn_file_actions_t* files,
+                const posix_spawnattr_t* attributes, char* const* arguments, char* const* variables) {
   static const auto next = real(&::posix_spawn, "posix_spawn");
   return fails_now(Call::posix_spawn) ? errno : next(id, path, files, attributes, arguments, variables);
 }

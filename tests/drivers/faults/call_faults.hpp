@@ -7,14 +7,35 @@ namespace calibrd::faults {
 
 /// What the code of the links asks of the system; operator new besides.
 enum class Call {
-  socket, connect, getsockopt, setsockopt, ioctl, getsockname, getpeername, epoll_ctl, epoll_wait, recvmsg, poll,
-  getaddrinfo, pthread_create, eventfd, memfd_create, ftruncate, fstat, fcntl, mmap, socketpair, posix_spawn, recv,
-  waitpid, allocation
+  socket,
+  connect,
+  getsockopt,
+  setsockopt,
+  ioctl,
+  getsockname,
+  getpeername,
+  epoll_ctl,
+  epoll_wait,
+  recvmsg,
+  poll,
+  getaddrinfo,
+  pthread_create,
+  eventfd,
+  memfd_create,
+  ftruncate,
+  fstat,
+  fcntl,
+  mmap,
+  socketpair,
+  posix_spawn,
+  recv,
+  waitpid,
+  allocation
 };
 const char* name_of(Call call);
 
-/// The n-th such call from now on, counted from 1, of all threads that are not a Bystander fails with `error` (an
-/// errno, or an EAI_ of getaddrinfo; an allocation throws).
+/// The n-th such call from now on, counted from 1, of all threads that are not a Bystander fails with `error`
+/// (an errno, or an EAI_ of getaddrinfo; an allocation throws).
 void fail(Call call, int n, int error);
 /// No call fails from now on. True: one has failed since fail().
 bool heal();

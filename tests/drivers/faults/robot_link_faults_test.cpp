@@ -36,7 +36,8 @@ StateClientSettings settings_for(const StatePeer& peer) {
 /// A link on a thread of its own, whose controller sends joints all the time and closes the connection once.
 class LinkAtWork {
  public:
-  LinkAtWork() : client_(*StateClient::create(context_.get_executor(), settings_for(peer_), recorder_.events())) {}
+  LinkAtWork()
+      : client_(*StateClient::create(context_.get_executor(), settings_for(peer_), recorder_.events())) {}
   ~LinkAtWork() { end(); }
   void begin() {
     client_.start();
@@ -98,7 +99,8 @@ bool survives(const Fault& fault, int n) {
   EXPECT_TRUE(link.deliver(2));
   link.end();
   for (const auto& report : link.reports())
-    EXPECT_TRUE(report.state == RobotLinkHealth::State::streaming || report.reason.size() > 20U) << report.reason;
+    EXPECT_TRUE(report.state == RobotLinkHealth::State::streaming || report.reason.size() > 20U)
+        << report.reason;
   return has_failed;
 }
 
@@ -125,15 +127,18 @@ TEST_P(RobotLinkCalls, EachMayFailAndTheJointsComeBack) {
 using faults::Call;
 INSTANTIATE_TEST_SUITE_P(
     One, RobotLinkCalls,
-    ::testing::Values(Fault{Call::socket, EMFILE}, Fault{Call::socket, ENOBUFS}, Fault{Call::connect, ENETUNREACH},
-                      Fault{Call::connect, EADDRNOTAVAIL}, Fault{Call::getsockopt, ENOBUFS},
-                      Fault{Call::setsockopt, ENOMEM, 20}, Fault{Call::ioctl, ENOMEM, 12},
-                      Fault{Call::getsockname, ENOBUFS}, Fault{Call::getpeername, ENOTCONN},
-                      Fault{Call::epoll_ctl, ENOMEM, 12}, Fault{Call::epoll_wait, EINTR, 12},
-                      Fault{Call::recvmsg, ECONNRESET}, Fault{Call::recvmsg, EINTR}, Fault{Call::recvmsg, ENOMEM},
+    ::testing::Values(Fault{Call::socket, EMFILE}, Fault{Call::socket, ENOBUFS},
+                      Fault{Call::connect, ENETUNREACH}, Fault{Call::connect, EADDRNOTAVAIL},
+                      Fault{Call::getsockopt, ENOBUFS}, Fault{Call::setsockopt, ENOMEM, 20},
+                      Fault{Call::ioctl, ENOMEM, 12}, Fault{Call::getsockname, ENOBUFS},
+                      Fault{Call::getpeername, ENOTCONN}, Fault{Call::epoll_ctl, ENOMEM, 12},
+                      Fault{Call::epoll_wait, EINTR, 12}, Fault{Call::recvmsg, ECONNRESET},
+                      Fault{Call::recvmsg, EINTR}, Fault{Call::recvmsg, ENOMEM},
                       Fault{Call::getaddrinfo, EAI_AGAIN}, Fault{Call::pthread_create, EAGAIN},
                       Fault{Call::allocation, ENOMEM, 400}),
-    [](const auto& info) { return std::string(name_of(info.param.call)) + "_" + std::to_string(std::abs(info.param.error)); });
+    [](const auto& info) {
+      return std::string(name_of(info.param.call)) + "_" + std::to_string(std::abs(info.param.error));
+    });
 
 }  // namespace
 }  // namespace calibrd

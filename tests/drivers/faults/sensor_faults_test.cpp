@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-// Every call that looks after a sensor's process fails once, in turn: it says so, and the frames come back by themselves.
+// Every call that looks after a sensor's process fails once, in turn: it says so, and the frames come back by
+// themselves.
 #include <sys/wait.h>
 
 #include <cerrno>
@@ -73,14 +74,16 @@ TEST_P(SensorCalls, EachMayFailAndTheFramesComeBack) {
 }
 
 using faults::Call;
-INSTANTIATE_TEST_SUITE_P(
-    One, SensorCalls,
-    ::testing::Values(Fault{Call::eventfd, EMFILE}, Fault{Call::memfd_create, EMFILE}, Fault{Call::ftruncate, ENOMEM},
-                      Fault{Call::fstat, EIO}, Fault{Call::fcntl, EMFILE, 12}, Fault{Call::mmap, ENOMEM},
-                      Fault{Call::socketpair, EMFILE}, Fault{Call::posix_spawn, EAGAIN}, Fault{Call::poll, ENOMEM, 4},
-                      Fault{Call::recv, ENOMEM, 4}, Fault{Call::waitpid, EINTR, 4}, Fault{Call::pthread_create, EAGAIN},
-                      Fault{Call::allocation, ENOMEM, 60}),
-    [](const auto& info) { return std::string(name_of(info.param.call)); });
+INSTANTIATE_TEST_SUITE_P(One, SensorCalls,
+                         ::testing::Values(Fault{Call::eventfd, EMFILE}, Fault{Call::memfd_create, EMFILE},
+                                           Fault{Call::ftruncate, ENOMEM}, Fault{Call::fstat, EIO},
+                                           Fault{Call::fcntl, EMFILE, 12}, Fault{Call::mmap, ENOMEM},
+                                           Fault{Call::socketpair, EMFILE}, Fault{Call::posix_spawn, EAGAIN},
+                                           Fault{Call::poll, ENOMEM, 4}, Fault{Call::recv, ENOMEM, 4},
+                                           Fault{Call::waitpid, EINTR, 4},
+                                           Fault{Call::pthread_create, EAGAIN},
+                                           Fault{Call::allocation, ENOMEM, 60}),
+                         [](const auto& info) { return std::string(name_of(info.param.call)); });
 
 }  // namespace
 }  // namespace calibrd::fake

@@ -57,6 +57,18 @@ TEST_F(Watch, ChecksWithoutEvidenceDoNotKeepAPoseValid) {
   EXPECT_FALSE(watch_.is_valid(at(61s)));
 }
 
+TEST_F(Watch, NoAgreeingPostureMakesAContestedPoseGood) {
+  watch_.set_fresh(at(0ms));
+  watch_.on_contested(true);
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  EXPECT_NE(watch_.reason(at(1s)).find("several postures"), std::string::npos);
+  watch_.on_check(kAgrees, at(1s));
+  EXPECT_FALSE(watch_.is_valid(at(1s)));
+  watch_.on_contested(false);
+  watch_.on_check(kAgrees, at(2s));
+  EXPECT_TRUE(watch_.is_valid(at(2s)));
+}
+
 TEST_F(Watch, OneDisagreementEndsValidityAtOnceAndARowOfThemIsDrift) {
   watch_.set_fresh(at(0ms));
   watch_.on_check(kDisagrees, at(1s));
