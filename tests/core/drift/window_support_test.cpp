@@ -194,8 +194,10 @@ TEST_F(SlideAfterDark, IsNoneWhenTheRobotDeniesItInTime) {
   darken();
   push(kPushed_m);
   watch_for(0.3);
-  check(Vector6d::Zero());
-  watch_for(1);
+  for (int asked = 0; asked < 5; ++asked) {
+    check(Vector6d::Zero());
+    watch_for(0.2);
+  }
   EXPECT_EQ(moved_at_frame_, -1);
 }
 
