@@ -129,7 +129,8 @@ void DriftWatch::test(const BackgroundObservation& observation) {
                  move * observation.supported_shift,
                  move * observation.supported_covariance * move.transpose(), observation.common_share};
   test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
-  if (test_.run_length() <= 1) was_open_ = !word_.pins_within(kEvidence_s, frame_s_);
+  const bool is_denied = frame_s_ - denied_s_ < kEvidence_s;
+  if (test_.run_length() <= 1) was_open_ = is_denied || !word_.pins_within(kEvidence_s, frame_s_);
   const auto& supported = innovation_->supported_covariance;
   const bool is_pinned = pins(supported, settings_.pinned_m, settings_.pinned_rad);
   word_.add(is_pinned, pins(supported, kFinely_m, kFinely_rad), frame_s_);

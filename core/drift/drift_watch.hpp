@@ -134,7 +134,7 @@ class DriftWatch {
          learnt_s_ = -1;
   BackgroundWord word_;
   ShiftDispute dispute_;
-  bool was_open_ = false;        // the background left a direction open before the test began to rise
+  bool was_open_ = false;        // before the test began to rise, or the robot had just denied a move
   double alarmed_since_s_ = -1;  // the test would alarm
   /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
   /// of the middle of the background.

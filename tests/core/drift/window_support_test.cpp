@@ -153,7 +153,7 @@ TEST_F(TakenBoxes, ThatComeBackElsewhereAreNoMove) {
   watch_for(4);
   push(kOutOfView_m);
   watch_for(3);
-  push(0.015 - kOutOfView_m);
+  push(kPushed_m - kOutOfView_m);
   watch_for(2);
   EXPECT_EQ(moved_at_frame_, -1);
   moved_.tail<3>() = 0.003 * true_T_base_sensor().linear().col(1);
