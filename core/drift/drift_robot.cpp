@@ -67,8 +67,10 @@ bool DriftWatch::is_what_was_followed(const RobotShift& robot) const {
 /// By how much (−2 log likelihood) the robot, seen since the test began to rise, speaks for standing still
 /// rather than for the move that the background shows; 0: it has not been seen.
 double DriftWatch::robots_preference(double now_s) const {
-  const double onset_s = test_.run_length() / settings_.shift.rate_hz;
-  if (!robot_word_.has_spoken_within(std::min(RobotWord::kOfNow_s, onset_s), now_s)) return 0;
+  const double run_s = test_.run_length() / settings_.shift.rate_hz;
+  const double since_s =
+      std::max(std::min(RobotWord::kOfNow_s, run_s), std::min(kAnswer_s, now_s - rises_since_s_));
+  if (!robot_word_.has_spoken_within(since_s, now_s)) return 0;
   const PoseCheck& check = *robot_word_.newest();
   const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_ * map_.middle_sensor());
   const Vector6d moved = move * test_.mean(), seen = check.turn_shift;

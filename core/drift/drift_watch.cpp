@@ -23,8 +23,6 @@ constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
 /// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
 /// the sensor has moved is not believed, or for the move before it is believed at once.
 constexpr double kDenial = 16;
-/// The robot is asked ten times a second; one that works mostly answers within this.
-constexpr double kAnswer_s = 0.5;
 constexpr double kRobotHolds_s = 10;
 constexpr double kOutOfSight_s = 2;
 constexpr double kOffsetMean_s = 1;
@@ -77,7 +75,7 @@ void DriftWatch::start_over() {
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
   quiet_frames_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = alarmed_since_s_ = -1;
-  evidence_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
+  evidence_s_ = risen_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
   followed_.setZero();
   absorbed_s_ = frame_s_;
@@ -129,8 +127,7 @@ void DriftWatch::test(const BackgroundObservation& observation) {
                  move * observation.supported_shift,
                  move * observation.supported_covariance * move.transpose(), observation.common_share};
   test_.add(innovation_->supported_shift, innovation_->supported_covariance, innovation_->common_share);
-  const bool is_denied = frame_s_ - denied_s_ < kEvidence_s;
-  if (test_.run_length() <= 1) was_open_ = is_denied || !word_.pins_within(kEvidence_s, frame_s_);
+  follow_rise();
   const auto& supported = innovation_->supported_covariance;
   const bool is_pinned = pins(supported, settings_.pinned_m, settings_.pinned_rad);
   word_.add(is_pinned, pins(supported, kFinely_m, kFinely_rad), frame_s_);
@@ -145,6 +142,16 @@ void DriftWatch::test(const BackgroundObservation& observation) {
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());
   report_.shift_sigma_m = std::sqrt(innovation_->covariance.bottomRightCorner<3, 3>().trace());
   raise_alarm();
+}
+
+/// A shift that shows in some frames and not in others rises several times.
+void DriftWatch::follow_rise() {
+  if (test_.run_length() == 0) return;
+  if (frame_s_ - risen_s_ > kEvidence_s) {
+    rises_since_s_ = frame_s_;
+    was_open_ = !word_.pins_within(kEvidence_s, frame_s_);
+  }
+  risen_s_ = frame_s_;
 }
 
 void DriftWatch::on_gap() {

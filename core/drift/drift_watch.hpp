@@ -88,6 +88,7 @@ class DriftWatch {
   void realign(std::span<const std::uint8_t> robot, BackgroundObservation& observation);
   void test(const BackgroundObservation& observation);
   bool pins(const Matrix6d& covariance, double within_m, double within_rad) const;
+  void follow_rise();
   void raise_alarm();
   void count_quiet();
   void follow_offset(const BackgroundObservation& observation, double now_s);
@@ -111,6 +112,8 @@ class DriftWatch {
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
   static constexpr double kEvidence_s = 1;  // what was seen so lately is of now
+  /// The robot is asked ten times a second; one that stands still answers within this.
+  static constexpr double kAnswer_s = 0.5;
   /// Where a moved sensor is now is told only when it is known so well.
   static constexpr double kSeenWithin_m = 0.01, kSeenWithin_rad = 0.01;
 
@@ -134,8 +137,9 @@ class DriftWatch {
          learnt_s_ = -1;
   BackgroundWord word_;
   ShiftDispute dispute_;
-  bool was_open_ = false;        // before the test began to rise, or the robot had just denied a move
-  double alarmed_since_s_ = -1;  // the test would alarm
+  double risen_s_ = -1e9, rises_since_s_ = 0;  // the test was, and has been now and then, above 0
+  bool was_open_ = false;                      // the background left a direction open before
+  double alarmed_since_s_ = -1;                // the test would alarm
   /// What was taken for pushes of boxes, all together, and may have been a sensor that creeps: turn and shift
   /// of the middle of the background.
   Vector6d followed_ = Vector6d::Zero();
