@@ -87,7 +87,8 @@ TEST_F(PoseRoutes, EtagChangesWithCalibrationStateAndValidity) {
   EXPECT_EQ(get(kPose, {{"if-none-match", tag}}).status, 200);
 }
 
-// A browser that kept the answer would ask with its ETag, which job and candidate are no part of, and show old ones.
+// A browser that kept the answer would ask with its ETag, which job and candidate are no part of, and show
+// old ones.
 TEST_F(PoseRoutes, NoCacheMayKeepAnAnswer) {
   get(kPose);
   EXPECT_EQ(header("Cache-Control"), "no-store");
