@@ -21,8 +21,6 @@ constexpr double kLeftOut = 0.15;
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kTypicalSigma_m = 1.6e-3;
 constexpr int kSteps = 3;
-/// Cells of one square of this side share what correlates: bumps that were no planes, multipath, a cable.
-constexpr int kClusterSide = 6;
 /// A cell whose depth differs by more is another surface.
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
@@ -47,8 +45,6 @@ constexpr double kUnmodelledShare = 0.05;
 constexpr double kNoShift = 4;
 
 using Sums = BackgroundMatrix;
-
-int tile_side(const CameraModel& grid) { return (grid.width - 1) / kTilesPerRow + 1; }
 
 BackgroundVector vague_information() {
   BackgroundVector information = BackgroundVector::Constant(1 / (kVague * kVague));
@@ -78,51 +74,6 @@ struct BackgroundMatcher::Fit {
     return static_cast<double>(used) >= (1 - kLeftOut) * static_cast<double>(around);
   }
 };
-
-/// The sensor moves by δ (sensor axes), the plane m·p = 1 stands: the depth z = 1/(m·d) along d changes by
-/// -z (m·δt) - z² (d×m)·δω.
-void BackgroundMatcher::refresh() {
-  rows_.clear();
-  spurious_.setZero();
-  const CameraModel& grid = map_.grid();
-  const auto per_row = static_cast<std::uint32_t>((grid.width - 1) / kClusterSide + 1);
-  for (int y = 0; y < grid.height; ++y) {
-    for (int x = 0; x < grid.width; ++x) {
-      const auto cell = static_cast<std::uint32_t>(y * grid.width + x);
-      const BackgroundCell& known = map_.cells()[cell];
-      if (!known.has_plane()) continue;
-      const Eigen::Vector3f d = map_.rays().at(x, y).cast<float>(), m = known.normal_per_m;
-      const float z = known.depth_m;
-      Row row{cell,
-              static_cast<std::uint32_t>(y / kClusterSide) * per_row +
-                  static_cast<std::uint32_t>(x / kClusterSide),
-              static_cast<std::uint32_t>(y / tile_side(grid) * kTilesPerRow + x / tile_side(grid)),
-              known.sigma_m};
-      row.slope.head<3>() = -z * z * d.cross(m);
-      row.slope.segment<3>(3) = -z * m;
-      row.slope[6] = 1;
-      rows_.push_back(row);
-      add_spurious(known, d);
-    }
-  }
-  std::ranges::stable_sort(rows_, {}, &Row::tile);
-  tiles_ = static_cast<std::size_t>(kTilesPerRow * ((grid.height - 1) / tile_side(grid) + 1));
-  clusters_ =
-      static_cast<std::size_t>(per_row) * static_cast<std::size_t>((grid.height - 1) / kClusterSide + 1);
-}
-
-/// Normals that scatter look as if they showed every direction: a plain wall would seem to tell of moves
-/// along it. How much of the squares of the slopes is but that.
-void BackgroundMatcher::add_spurious(const BackgroundCell& known, const Eigen::Vector3f& ray) {
-  const double z = known.depth_m, sigma = known.sigma_m;
-  const Eigen::Vector3d d = ray.cast<double>();
-  Eigen::Matrix<double, 6, 3> slope_by_normal;
-  slope_by_normal.topRows<3>() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;
-  slope_by_normal.topRows<3>() *= z * z;
-  slope_by_normal.bottomRows<3>() = -z * Eigen::Matrix3d::Identity();
-  spurious_.topLeftCorner<6, 6>() +=
-      slope_by_normal * known.normal_noise.cast<double>() * slope_by_normal.transpose() / (sigma * sigma);
-}
 
 void BackgroundMatcher::sample(const DepthImage& depth) {
   const CameraModel& grid = map_.grid();
@@ -233,7 +184,7 @@ void BackgroundMatcher::find_support(const Fit& fit, const Matrix6d& turn,
   const double seen = static_cast<double>(fit.used) / static_cast<double>(rows_.size());
   const Sums left = without(fit.worth * seen * spurious_, fit.worth * (fit.information - least->left_out),
                             vague.asDiagonal());
-  const int side = tile_side(map_.grid());
+  const int side = tile_side();
   const auto x = static_cast<int>(least->column) * side, y = static_cast<int>(least->row) * side;
   observation.unsupported = CellWindow{x, y, static_cast<int>(kWindowTiles) * side};
   observation.supported_shift = turn * least->solution.head<6>();

@@ -106,6 +106,7 @@ class BackgroundMatcher {
     Eigen::Matrix<float, kParameters + 1, 1> slope = Eigen::Matrix<float, kParameters + 1, 1>::Zero();
   };
   struct Fit;
+  int tile_side() const;  // cells
   void sample(const DepthImage& depth);
   void choose(std::span<const std::uint8_t> robot);
   void follow_trust(const BackgroundObservation& observation);
