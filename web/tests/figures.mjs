@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints the page's figures: scripts/page.sh figures [MINUTES]
 import { readdirSync, statSync } from "node:fs";
+import { loadavg } from "node:os";
 import { join } from "node:path";
 import { Faults, keep, openBrowser, openPage, part, seriousFaults } from "./lib/browser.mjs";
 import { BUILD, Cell, SENSOR, sleep, waitUntil } from "./lib/cell.mjs";
@@ -41,10 +42,19 @@ async function framesPerSecond(page, seconds) {
   return (1000 * (after - before)) / (end - start);
 }
 
-/** Of script objects, after collecting what is garbage, MB. */
+/** Of script objects and what they hold (arrays, elements), after collecting what is garbage, MB. */
 async function heap(session) {
   await session.send("HeapProfiler.collectGarbage");
-  return (await session.send("Runtime.getHeapUsage")).usedSize / 1e6;
+  const { usedSize, backingStorageSize = 0, embedderHeapUsedSize = 0 } = await session.send("Runtime.getHeapUsage");
+  return (usedSize + backingStorageSize + embedderHeapUsedSize) / 1e6;
+}
+
+/** Of a line through samples, one a minute: kB/min. */
+function slope(samples) {
+  const middle = (samples.length - 1) / 2;
+  const sums = samples.map((value, at) => [(at - middle) * value, (at - middle) ** 2]);
+  const total = (part) => sums.reduce((sum, parts) => sum + parts[part], 0);
+  return (1000 * total(0)) / (total(1) || 1);
 }
 
 async function heapOver(page) {
@@ -60,7 +70,8 @@ async function heapOver(page) {
 }
 
 async function measure(cell, browser) {
-  const row = (what, value, wanted) => console.log(`${what.padEnd(58)} ${value.padEnd(34)} ${wanted}`);
+  const row = (what, value, wanted) => console.log(`${what.padEnd(58)} ${value.padEnd(44)} ${wanted}`);
+  row("processes waiting for a processor (load average)", loadavg().map((load) => load.toFixed(1)).join(", "), "");
   row("script, gzip", `${scriptKilobytes().toFixed(0)} kB`, "<= 300 kB");
   const views = [];
   for (let turn = 0; turn < 5; ++turn) views.push(await firstView(browser, cell.url));
@@ -76,7 +87,7 @@ async function measure(cell, browser) {
   row(`3D view, 1280x720, software GL, ${points} points`, `${(await framesPerSecond(page, 10)).toFixed(1)} frames/s`, ">= 20");
   await keep(page, "figures");
   const samples = await heapOver(page);
-  row(`script memory over ${minutes} min, first to last`, `${samples[0].toFixed(1)} to ${samples.at(-1).toFixed(1)} MB (most ${Math.max(...samples).toFixed(1)})`, "flat");
+  row(`script memory over ${minutes} min, first to last`, `${samples[0].toFixed(1)} to ${samples.at(-1).toFixed(1)} MB (most ${Math.max(...samples).toFixed(1)}), ${slope(samples).toFixed(0)} kB/min`, "flat");
   row("serious faults of accessibility (axe-core)", String((await seriousFaults(page)).length), "0");
   row("console errors", String(faults.errors.length), "0");
   row("requests to other hosts", String(faults.foreign.length), "0");

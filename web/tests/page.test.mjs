@@ -73,7 +73,7 @@ test("the first calibration, by clicking, ends with a valid pose", async () => {
   await says("state", "valid");
   first = await pose();
   assert.equal(first.valid, true);
-  await waitUntil("the cloud is drawn", () => page.locator("canvas[data-cloud=shown]").count());
+  await waitUntil("the cloud is drawn", async () => Number(await part(page, "cell").getAttribute("data-points")) > 20_000);
   await says("error", /tray .*mm \(1σ\)/);
   await show("4-valid");
 });

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-import { Color, Vector3 } from "three";
+import { Vector3 } from "three";
 import { explain } from "../api/client";
 import { h } from "../ui/dom";
-import { Cloud, LOOK, type Look, PixelPoints } from "../view/cloud";
+import { Cloud, type Look, SHADE } from "../view/cloud";
+import { CloudPicture } from "../view/cloud_picture";
+import { DIVERGING, rgbOf, TURBO } from "../view/colours";
 import { Frustum } from "../view/frustum";
 import { between, matrixOf } from "../view/matrix";
 import { RobotView } from "../view/robot";
@@ -12,15 +14,17 @@ import type { Comparison } from "../view/comparison";
 import type { Context } from "./context";
 
 const TRUST_COLOURS = { valid: "#1fa971", doubtful: "#e0a100", wrong: "#d6334a" } as const;
-const BEFORE = new Color("#f0852d");
-const AFTER = new Color("#1fa971");
+const VIRTUAL = rgbOf("#c04bd8");
+const BEFORE = rgbOf("#f0852d");
+const AFTER = rgbOf("#1fa971");
 
 /** The cell in three dimensions. */
 export class CellView {
-  private readonly points = new PixelPoints();
-  private readonly measured = new Cloud(this.points, LOOK.depth);
-  private readonly predicted = new Cloud(this.points, LOOK.virtual, "#c04bd8");
-  private readonly compared = new Cloud(this.points, LOOK.robot);
+  private readonly measured = new Cloud("depth");
+  private readonly predicted = new Cloud("virtual");
+  private readonly compared = new Cloud("robot");
+  private readonly clouds = [this.measured, this.predicted, this.compared];
+  private readonly points = new CloudPicture(this.clouds);
   private readonly frusta = new Map<string, Frustum>();
   private robot: RobotView | null = null;
   private ghost: RobotView | null = null;
@@ -34,7 +38,12 @@ export class CellView {
     private readonly canvas: HTMLCanvasElement,
     private readonly picture = new CellScene(canvas),
   ) {
-    picture.scene.add(this.measured, this.predicted, this.compared);
+    picture.scene.add(this.points);
+    this.points.paint(SHADE.virtual, VIRTUAL);
+    picture.beforeDraw = (camera, width, height) => {
+      this.points.refresh(camera, width, height);
+      canvas.dataset["points"] = String(this.points.drawn);
+    };
     this.follow();
   }
 
@@ -45,12 +54,13 @@ export class CellView {
 
   set look(look: Look) {
     this.measured.look = look;
-    this.picture.draw();
+    this.points.ramp = look === "residual" ? DIVERGING : TURBO;
+    this.drawClouds();
   }
 
   show(what: "measured" | "predicted", isShown: boolean): void {
     this[what].visible = isShown;
-    this.picture.draw();
+    this.drawClouds();
   }
 
   /** Before (0) and after (1) a calibration; null: neither. */
@@ -148,10 +158,13 @@ export class CellView {
   private takeFrame(): void {
     const frame = this.context.frames.frame.value;
     if (!frame) return this.placeClouds();
-    this.points.take(frame);
-    this.canvas.dataset["points"] = String(frame.depth.reduce((count, depth) => count + (depth > 0 ? 1 : 0), 0));
-    for (const cloud of [this.measured, this.predicted, this.compared]) cloud.refresh();
+    for (const cloud of this.clouds) cloud.take(frame);
     this.placeClouds();
+  }
+
+  private drawClouds(): void {
+    this.points.touch();
+    this.picture.draw();
   }
 
   /** Without a pose there is no place in the cell where the points could be shown. */
@@ -162,13 +175,12 @@ export class CellView {
     if (compared) {
       const place = between(matrixOf(compared.before), matrixOf(compared.after), this.share);
       this.compared.matrix.copy(place);
-      this.compared.tint = BEFORE.clone().lerp(AFTER, this.share);
+      const mixed = BEFORE.map((part, at) => part + this.share * ((AFTER[at] ?? 0) - part)) as [number, number, number];
+      this.points.paint(SHADE.robot, mixed);
     }
     for (const cloud of [this.measured, this.predicted]) if (pose) cloud.matrix.copy(matrixOf(pose));
-    for (const cloud of [this.measured, this.predicted, this.compared]) cloud.matrixWorldNeedsUpdate = true;
     if (!pose) this.measured.visible = this.predicted.visible = false;
-    this.canvas.dataset["cloud"] = pose ? "shown" : "none";
-    this.picture.draw();
+    this.drawClouds();
   }
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { h, setText } from "../ui/dom";
 import { duration } from "../ui/format";
-import { LOOK } from "../view/cloud";
 import { type Comparison, lastComparison } from "../view/comparison";
 import { CellView, withoutView } from "./cell_view";
 import type { Context } from "./context";
@@ -56,7 +55,7 @@ function viewControls(context: Context, view: CellView | null, eye: Eye, stage: 
   const colouring = h("select", { "aria-label": "Colour of the points", "data-test": "colouring" }, ...(["depth", "residual", "class"] as const).map((name) => h("option", { value: name }, `by ${name}`)));
   const recolour = (): void => {
     const name = colouring.value as Colouring;
-    if (view) view.look = LOOK[name];
+    if (view) view.look = name;
     eye.colouring = name;
     legendPlace.replaceChildren(legend(name));
   };

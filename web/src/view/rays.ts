@@ -2,8 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Camera } from "../api/types";
 
+let known: { key: string; rays: Float32Array } = { key: "", rays: new Float32Array() };
+
+/** The same array for the same camera: it takes longer to make than a frame takes to come. */
+export function raysOf(camera: Camera): Float32Array {
+  const key = JSON.stringify(camera);
+  if (key !== known.key) known = { key, rays: pixelRays(camera) };
+  return known.rays;
+}
+
 /** Direction (x, y), with z = 1, that each pixel sees along, distortion undone. Sensor frame: x right, y down. */
-export function pixelRays(camera: Camera): Float32Array {
+function pixelRays(camera: Camera): Float32Array {
   const rays = new Float32Array(2 * camera.width * camera.height);
   let at = 0;
   for (let v = 0; v < camera.height; ++v)

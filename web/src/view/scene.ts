@@ -10,6 +10,8 @@ export class CellScene {
   private readonly renderer: WebGLRenderer;
   private readonly camera = new PerspectiveCamera(45, 1, 0.02, 50);
   private isDue = false;
+  /** Called before a picture is drawn, with its size in CSS pixels. */
+  beforeDraw: (camera: PerspectiveCamera, width: number, height: number) => void = () => undefined;
   /** Pictures drawn since the page was opened. */
   drawn = 0;
 
@@ -36,6 +38,8 @@ export class CellScene {
     requestAnimationFrame(() => {
       this.isDue = false;
       this.scene.background = new Color(getComputedStyle(this.canvas).backgroundColor);
+      this.camera.updateMatrixWorld();
+      this.beforeDraw(this.camera, Math.max(1, this.canvas.clientWidth), Math.max(1, this.canvas.clientHeight));
       this.renderer.render(this.scene, this.camera);
       this.drawn += 1;
     });
