@@ -87,7 +87,8 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
   changed_.notify_all();
   if (refined) return;  // however it has ended: there is a pose, or the sensor has moved and is next
   patient.wants_all = tells_too_little(patient, calibration);
-  if (calibration.status == api::JobStatus::succeeded && !calibration.activate) {
+  const bool is_needed = patient.drifted;  // not where somebody has put the pose right meanwhile
+  if (calibration.status == api::JobStatus::succeeded && !calibration.activate && is_needed) {
     patient.candidate = calibration.id;
     patient.candidate_seen_at = seen_at;
   }

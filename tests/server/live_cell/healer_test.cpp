@@ -194,6 +194,15 @@ TEST_F(Healing, ACandidateOfBeforeAnotherMoveIsNoneAndAnotherIsFoundAtOnce) {
   EXPECT_TRUE(requests_[1].patience) << "as after any knock: quickly first";
 }
 
+TEST_F(Healing, WhatIsFoundAfterThePoseWasPutRightIsNoCandidate) {
+  begin(HealingMode::ask);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  set_state(api::PoseState::calibrated);
+  end("c1", api::JobStatus::succeeded, false);
+  EXPECT_EQ(healer_->candidate("eye"), "");
+}
+
 TEST_F(Healing, OffDoesNothing) {
   begin(HealingMode::off);
   set_state(api::PoseState::drifted);

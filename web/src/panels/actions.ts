@@ -104,7 +104,7 @@ class JobLine {
     this.job = job;
     this.element.hidden = job === null;
     if (!job) return;
-    setText(this.stage, job.status === "collecting" ? `Collecting postures: ${job.postures_seen} of ${job.postures}` : "Computing");
+    setText(this.stage, job.status === "collecting" ? "Collecting:" : "Computing");
     setText(this.message, job.message ?? "");
     this.progress.value = job.progress;
     this.cancel.hidden = !this.context.state.may("calibrate");

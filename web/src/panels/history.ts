@@ -20,7 +20,7 @@ export class HistoryPanel {
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
-    const columns = ["Calibration", "σ position, rotation", "Residual, coverage"];
+    const columns = ["Calibration", "σ of the pose", "Residual, coverage"];
     const head = h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "unseen" }, "compare")), ...columns.map((title) => h("th", { scope: "col" }, title))));
     this.element = h(
       "section",

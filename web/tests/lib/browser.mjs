@@ -33,7 +33,7 @@ export async function openPage(browser, url, faults, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   await context.grantPermissions(["clipboard-read", "clipboard-write"], { origin: url });
   const page = await context.newPage();
-  page.setDefaultTimeout(30_000);
+  page.setDefaultTimeout(60_000);
   faults.watch(page, url);
   await page.goto(`${url}/`);
   return page;

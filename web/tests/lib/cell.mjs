@@ -95,7 +95,7 @@ export class Cell {
   async serve() {
     const settings = [`server.port=${this.port}`, `robot.port=${this.controllerPort}`, `storage.path=${join(this.folder, "calibrd.db")}`, `robot.urdf=${URDF}`, `sensors.${SENSOR}.driver_directory=${join(BUILD, "lib/calibrd-sim-openni")}`, ...this.settings];
     this.daemon = new Program(this.folder, "calibrd", ["serve", "--config", join(SOURCE, "config/demo.toml"), ...settings.flatMap((setting) => ["--set", setting])], { CALIBRD_SIM_WORLD: this.world });
-    await waitUntil("robot and sensor are up", async () => (await fetch(`${this.url}/readyz`)).ok, 60_000);
+    await waitUntil("robot and sensor are up", async () => (await fetch(`${this.url}/readyz`)).ok, 120_000);
   }
 
   async api(path, token = "") {
