@@ -9,13 +9,16 @@ import { chromium } from "playwright-core";
 const OUT = process.env.CALIBRD_PAGE_OUT ?? "/tmp/calibrd-page";
 const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
+/** The browser reports every 4xx; a pose may end between the page's hearing of it and asking for it in a format. */
+const isOfAPoseThatEnds = (message) => /409/.test(message.text()) && /\/pose\?format=/.test(message.location().url);
+
 /** What went wrong in a page, or left its host. */
 export class Faults {
   errors = [];
   foreign = [];
 
   watch(page, url) {
-    page.on("console", (message) => message.type() === "error" && this.errors.push(message.text()));
+    page.on("console", (message) => message.type() === "error" && !isOfAPoseThatEnds(message) && this.errors.push(message.text()));
     page.on("pageerror", (error) => this.errors.push(String(error)));
     page.on("request", (request) => {
       const asked = request.url();
