@@ -11,6 +11,7 @@
 #   --first-seed S  other seeds for the report, from 100001 on
 #   --scenes N      another number of scenes, sensors or cells
 #   --keep FILE     where to leave the JSON lines
+#   --require       exit status 1 unless all is as it must be: see scripts/watch_table.py
 # What follows `--` goes to calibrd-bench:  scripts/watch.sh -- --event sensor_moved
 # With CALIBRD_SHARED_DATA set, the SIA5D in its models/ takes part beside the robots of the project.
 set -euo pipefail
@@ -18,7 +19,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # shellcheck source=scripts/lib/bench_robots.sh
 . scripts/lib/bench_robots.sh
-first=300001 scenes=45 what=events hours=1 kept='' short=''
+first=300001 scenes=45 what=events hours=1 kept='' short='' require=()
 
 while [ $# -gt 0 ]; do
   case $1 in
@@ -29,6 +30,7 @@ while [ $# -gt 0 ]; do
     --first-seed) first=${2:?--first-seed needs a number} && shift ;;
     --scenes) given=${2:?--scenes needs a number} && shift ;;
     --keep) kept=${2:?--keep needs a file} && shift ;;
+    --require) require=(--require) ;;
     --) shift && break ;;
     *) die "unknown option '$1'; see the head of scripts/watch.sh" ;;
   esac
@@ -54,4 +56,4 @@ case $what in
     ;;
 esac
 if [ -n "$kept" ]; then cp "$lines" "$kept"; fi
-python3 scripts/watch_table.py "$lines"
+python3 scripts/watch_table.py "${require[@]}" "$lines"

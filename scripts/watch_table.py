@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
 """Reads what `calibrd-bench watch`, `watch-creep`, `watch-hours` and `watch-tail` print (files named, or stdin) and
-prints a table of each kind that is there."""
+prints a table of each kind that is there. With --require: exit status 1 unless all is as it must be."""
 import collections
 import json
 import math
@@ -15,6 +15,7 @@ VERDICTS = ("in_place", "sensor_moved", "something_in_front", "scene_changed", "
             "depth_bias_changed", "no_evidence")
 SMALLEST = 6  # mm or mrad: moves up to here are a figure of their own
 LEAST_PEAKS, TAIL_SHARE, BOOTSTRAPS = 20, 0.1, 1000
+LEAST_RIGHT, MOST_FRAMES, MOST_CREEP = 0.95, (15, 30), 3.0  # what must be; frames: median, 95 %; mm or mrad
 
 
 def quantile(values, share):
@@ -43,9 +44,11 @@ def is_small(move):
 
 
 def show_frames(name, moves):
+    """Median and 95 % of the frames to the verdict."""
     frames = [move["frames_to_verdict"] for move in moves if move["frames_to_verdict"] >= 0]
     print(f"  {name}: {len(moves)}, found {len(frames)}, frames median / 95 % / most: {quantile(frames, 0.5)} / "
           f"{quantile(frames, 0.95)} / {max(frames, default=math.nan)}")
+    return quantile(frames, 0.5), quantile(frames, 0.95)
 
 
 def show_events(lines):
@@ -62,14 +65,16 @@ def show_events(lines):
     false = [line for line in lines if line["event"] != "sensor_moved" and "sensor_moved" in (line["verdict"],
                                                                                               line["before"])]
     print(f"moved, missed: {len(missed)} of {len(moves)}; said to have moved though it stood: {len(false)}")
+    is_well = right >= LEAST_RIGHT * len(lines) and not missed
     if moves:
-        show_frames("all moves", moves)
+        is_well &= all(it <= most for it, most in zip(show_frames("all moves", moves), MOST_FRAMES))
         show_frames(f"of at most {SMALLEST} mm and {SMALLEST} mrad", [move for move in moves if is_small(move)])
     print(times(lines))
     for line in lines:
         if line["event"] != line["verdict"] or line["before"] != "in_place":
             print(f"  seed {line['seed']} {line['robot']}: {line['what']}: {line['verdict']}, before {line['before']}, "
                   f"{line['seconds']}")
+    return is_well
 
 
 def show_creep(lines):
@@ -80,6 +85,7 @@ def show_creep(lines):
         print(f"  seed {line['seed']} {line['robot']}: {'turned' if line['turns'] else 'shifted'} "
               f"{line['at']:.2f} {'mrad' if line['turns'] else 'mm'}{'' if line['found'] else ', NOT FOUND'}; one frame's "
               f"sigma {line['sigma_mm']:.2f} mm, {line['sigma_mrad']:.2f} mrad; range {line['offset_mm']:+.1f} mm")
+    return all(line["found"] and line["at"] < MOST_CREEP for line in lines)
 
 
 def show_hours(lines):
@@ -93,6 +99,7 @@ def show_hours(lines):
         shown.update(line["seconds"])
     print("  shown: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in shown.most_common()))
     print(times(lines))
+    return not any(line["false_alarms"] for line in lines)
 
 
 def run_length_s(blocks, threshold):
@@ -119,20 +126,25 @@ def show_tail(blocks, drawn):
     print(f"  mean time to a false alarm from an exponential tail of {peaks} peaks: "
           f"{run_length_s(blocks, threshold) / YEAR_S:.3g} years; 90 % of {BOOTSTRAPS} draws of as many blocks: "
           f"{quantile(again, 0.05):.3g} to {quantile(again, 0.95):.3g} years")
+    return drawn["alarms"] == 0
 
 
-def main(paths):
+def main(arguments):
+    paths = [each for each in arguments if each != "--require"]
     files = [open(path, encoding="utf-8") for path in paths] or [sys.stdin]
     lines = [json.loads(line) for file in files for line in file if line.strip()]
+    are_well = []
     for key, show in (("event", show_events), ("turns", show_creep), ("with_evidence", show_hours)):
         chosen = [line for line in lines if key in line]
         if chosen:
-            show(chosen)
+            are_well.append(show(chosen))
     drawn = [line for line in lines if "resampled_h" in line]
     if drawn:
-        show_tail([line for line in lines if "peaks" in line], drawn[-1])
+        are_well.append(show_tail([line for line in lines if "peaks" in line], drawn[-1]))
     if not lines:
         sys.exit("watch_table.py: nothing to read")
+    if len(paths) < len(arguments) and not all(are_well):
+        sys.exit(1)
 
 
 if __name__ == "__main__":

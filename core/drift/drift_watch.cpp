@@ -24,7 +24,8 @@ constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
 /// the sensor has moved is not believed, or for the move before it is believed at once.
 constexpr double kDenial = 16;
 constexpr double kRobotHolds_s = 10;
-constexpr double kOutOfSight_s = 2;
+/// A person who passes is no reason to doubt; a lens that is covered is: nobody passes so near.
+constexpr double kOutOfSight_s = 2, kDark_s = 0.5;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -224,7 +225,7 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
   const bool elsewhere = lies_elsewhere_ || observation.share(CellState::farther) >= kLeastGone ||
                          (observation.share(CellState::same) < kLeastLeft && robot_word_.is_off(frame_s_));
   const bool lost = !observation.has_evidence && elsewhere;
-  if (observation.has_evidence || observation.share(CellState::dark) > 0.5) lost_since_s_ = -1;
+  if (observation.has_evidence || observation.share(CellState::dark) > kDarkShare) lost_since_s_ = -1;
   if (!lost) return;
   if (lost_since_s_ < 0 || now_s - lost_s_ > kGap_s) lost_since_s_ = now_s;
   lost_s_ = now_s;
@@ -271,7 +272,8 @@ bool DriftWatch::is_seen() const {
 
 bool DriftWatch::is_out_of_sight() const {
   const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_);
-  const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > kOutOfSight_s;
+  const double patience_s = is_dark() ? kDark_s : kOutOfSight_s;
+  const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > patience_s;
   return has_background() && (is_disputed || is_nowhere) &&
          !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);
 }

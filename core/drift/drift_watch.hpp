@@ -63,6 +63,8 @@ class DriftWatch {
   /// Nothing has shown for a while that the sensor stands about where it stood: the background is hidden,
   /// dark or elsewhere, or one thing in view says that it has slid; and the robot has not spoken.
   bool is_out_of_sight() const;
+  /// Most of the background has no depth in the last frame: whatever happens meanwhile, nobody sees it.
+  bool is_dark() const { return has_background() && report_.dark > kDarkShare; }
   /// Postures on end have spoken against pose and model, and the background does not show that it is the
   /// model: while that lasts no posture that agrees makes the pose good.
   bool is_contested() const { return model_wrong_ && !word_.pins_within(kEvidence_s, frame_s_); }
@@ -111,6 +113,7 @@ class DriftWatch {
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }
 
+  static constexpr double kDarkShare = 0.5;
   static constexpr double kEvidence_s = 1;  // what was seen so lately is of now
   /// The robot is asked ten times a second; one that stands still answers within this.
   static constexpr double kAnswer_s = 0.5;

@@ -20,7 +20,8 @@ constexpr double kFloor_m = 3e-4, kFloor_rad = 3e-4;
 
 }  // namespace
 
-void PostureMean::add(const PoseCheck& check, std::span<const double> joints_rad) {
+void PostureMean::add(const PoseCheck& check, std::span<const double> joints_rad, double now_s) {
+  std::erase_if(ended_, [&](const Posture& other) { return now_s - other.left_s > kOldest_s; });
   if (!(check.shift_sigmas > 0)) return;
   const Vector6d about_origin = shift_of_point(-check.middle_base) * check.turn_shift;
   ++posture_.checks;
@@ -30,7 +31,6 @@ void PostureMean::add(const PoseCheck& check, std::span<const double> joints_rad
 }
 
 void PostureMean::end_posture(double now_s) {
-  std::erase_if(ended_, [&](const Posture& other) { return now_s - other.left_s > kOldest_s; });
   Posture ended = std::exchange(posture_, {});
   // One that disagrees is the business of RobotWord's CUSUM, and would linger here.
   if (ended.checks == 0 || !ended.newest.agrees) return;

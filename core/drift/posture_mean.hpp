@@ -26,7 +26,7 @@ struct RobotShift {
 class PostureMean {
  public:
   /// A comparison of the posture that the robot stands in.
-  void add(const PoseCheck& check, std::span<const double> joints_rad);
+  void add(const PoseCheck& check, std::span<const double> joints_rad, double now_s);
   /// The robot has left it.
   void end_posture(double now_s);
 

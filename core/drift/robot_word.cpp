@@ -15,6 +15,8 @@ constexpr double kAllowance = 2.7, kPostureWeight = 2, kLimit = 5.5;
 constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
 /// Of the postures together (docs/figures.md has what it finds).
 constexpr double kCreepSigmas = 4;
+/// What comparisons in one motion, in which its frames and joints may lag, have against a pose is one word.
+constexpr double kLeastDoubt_s = 1;
 constexpr std::size_t kMostDoubts = 6;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
 
@@ -37,12 +39,13 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
   }
   newest_ = check;
   stamp_s_ = now_s;
-  mean_.add(check, joints);
+  mean_.add(check, joints, now_s);
   const double sigmas = check.agrees || check.shift_sigmas > 0 ? check.shift_sigmas : kUnexplained;
   ++posture_checks_;
   posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
   const double word =
       std::clamp(kPostureWeight * (posture_sigmas_ - kAllowance), -kMostPerPosture, kMostPerPosture);
+  if (statistic_ <= 0) doubt_since_s_ = now_s;
   statistic_ = std::max(0.0, before_posture_ + word);
 }
 
@@ -67,7 +70,9 @@ std::vector<PoseCheck> RobotWord::doubts() const {
   return doubts;
 }
 
-bool RobotWord::is_against() const { return statistic_ > kLimit; }
+bool RobotWord::is_against() const {
+  return statistic_ > kLimit && stamp_s_ - doubt_since_s_ >= kLeastDoubt_s;
+}
 bool RobotWord::is_against_no_more() const { return statistic_ < 0.5 * kLimit; }
 
 }  // namespace calibrd

@@ -31,7 +31,7 @@ class RobotWord {
   bool is_off(double now_s) const;
 
   bool has_doubt() const { return statistic_ > 0; }
-  /// Postures on end have spoken against pose and model ...
+  /// Postures on end have spoken against pose and model, for a second or more ...
   bool is_against() const;
   /// ... of each of them, since the doubt began, its newest comparison ...
   std::vector<PoseCheck> doubts() const;
@@ -47,7 +47,7 @@ class RobotWord {
  private:
   std::optional<PoseCheck> newest_;
   double stamp_s_ = -1e9;
-  double statistic_ = 0, before_posture_ = 0;
+  double statistic_ = 0, before_posture_ = 0, doubt_since_s_ = 0;
   std::vector<double> posture_;  // that is looked at
   double posture_sigmas_ = 0;    // mean of its comparisons
   int posture_checks_ = 0;

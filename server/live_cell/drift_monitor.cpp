@@ -72,12 +72,21 @@ void DriftMonitor::add_frame(const View& frame) {
   const std::lock_guard lock(mutex_);
   if (order_) return;  // a pose that came meanwhile: this was of the last one
   note(report, frame.stamp_s);
-  ++frames_seen_;
+  count_frame();
   in_place_ = watch_->is_in_place();
   wants_check_ = watch_->wants_check();
   out_of_sight_ = watch_->is_out_of_sight();
   contested_ = watch_->is_contested();
   stamp_ = time_of(frame.stamp_s);
+}
+
+/// A lens that is dark for a moment only, as one that is touched, is no sensor that was away.
+void DriftMonitor::count_frame() {
+  frames_dark_ = watch_->is_dark() ? frames_dark_ + 1 : 0;
+  if (frames_dark_ >= kFramesToShow)
+    frames_seen_ = 0;
+  else if (frames_dark_ == 0)
+    ++frames_seen_;
 }
 
 void DriftMonitor::note(const DriftReport& report, double now_s) {

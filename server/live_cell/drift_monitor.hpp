@@ -36,8 +36,9 @@ class DriftMonitor {
   /// As DriftWatch::is_contested(), of the last frame or check.
   bool is_contested() const;
   bool wants_check() const;
-  /// Enough frames were seen since the pose was set, or the sensor was back, for a moved sensor to show; also
-  /// while no background is known that could tell. Before, a check against the robot proves too little.
+  /// Enough frames were seen since the pose was set, the sensor was back, or the lens dark, for a moved
+  /// sensor to show; also while no background is known that could tell. Before, a check against the robot
+  /// proves too little.
   bool has_looked() const;
   /// The sensor was away and may have been moved. On the sensor's thread.
   void on_sensor_lost();
@@ -58,6 +59,7 @@ class DriftMonitor {
   };
   void take_order();
   void keep_for_background(const View& frame);
+  void count_frame();
   void note(const DriftReport& report, double now_s);
 
   const std::unique_ptr<DriftWatch> watch_;  // the sensor's thread's own
@@ -70,6 +72,7 @@ class DriftMonitor {
   std::shared_ptr<const BackgroundMap> background_;
   bool in_place_ = false, wants_check_ = false, out_of_sight_ = false, contested_ = false;
   int frames_seen_ = 0;  // since the pose was set, or the sensor lost
+  int frames_dark_ = 0;  // on end
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it
   std::deque<api::DriftEvent> events_;

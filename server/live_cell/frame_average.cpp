@@ -81,4 +81,25 @@ View average_views(std::span<const View> views) {
   return average;
 }
 
+void bring_to_one_unit(std::span<View> views) {
+  std::vector<double> units_m;
+  double largest_m = 0;
+  for (const View& view : views) {
+    units_m.push_back(view.depth.scale_m);
+    if (view.depth.raw.empty()) continue;
+    largest_m = std::max(largest_m, view.depth.scale_m * *std::ranges::max_element(view.depth.raw));
+  }
+  std::ranges::sort(units_m);
+  constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
+  const auto fits = [&](double unit_m) { return largest_m <= unit_m * kMost; };
+  const auto finest = std::ranges::find_if(units_m, fits);
+  if (finest == units_m.end()) return;  // there is no view
+  const double unit_m = *finest;
+  for (View& view : views) {
+    const double parts = view.depth.scale_m / unit_m;
+    for (std::uint16_t& raw : view.depth.raw) raw = static_cast<std::uint16_t>(std::lround(raw * parts));
+    view.depth.scale_m = unit_m;
+  }
+}
+
 }  // namespace calibrd

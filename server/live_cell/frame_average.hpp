@@ -14,4 +14,7 @@ namespace calibrd {
 /// is returned as it is.
 View average_views(std::span<const View> views);
 
+/// Brings the depth of all views to one unit, as a capture has: the finest of theirs that all depths fit.
+void bring_to_one_unit(std::span<View> views);
+
 }  // namespace calibrd

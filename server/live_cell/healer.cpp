@@ -54,8 +54,12 @@ void Healer::on_pose(const api::PoseReport& pose) {
   const std::lock_guard lock(mutex_);
   Patient& patient = patients_[pose.sensor_id];
   const bool drifted = pose.state == api::PoseState::drifted;
-  if (drifted == patient.drifted) return;
+  const auto calibration = pose.known ? pose.known->calibration_id : std::string();
+  // One that was found meanwhile, and has drifted before anybody heard that it was good, is another move.
+  const bool is_another = drifted && calibration != patient.drifted_calibration;
+  if (drifted == patient.drifted && !is_another) return;
   patient.drifted = drifted;
+  if (drifted) patient.drifted_calibration = calibration;
   patient.candidate.clear();
   if (drifted) plan(patient, Clock::now());
   changed_.notify_all();

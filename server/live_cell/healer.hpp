@@ -74,7 +74,8 @@ class Healer {
   };
   struct Patient {
     bool drifted = false;
-    bool wants_all = false;  ///< its pose is from few postures, and could be better
+    std::string drifted_calibration;  ///< whose pose has drifted
+    bool wants_all = false;           ///< its pose is from few postures, and could be better
     std::optional<Attempt> under_way;
     std::string candidate;
     Clock::time_point candidate_seen_at;

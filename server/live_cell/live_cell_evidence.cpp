@@ -3,6 +3,7 @@
 //
 // The part of LiveCell that keeps what calibrations were made from.
 #include "api/problem/api_error.hpp"
+#include "server/live_cell/frame_average.hpp"
 #include "server/live_cell/live_cell.hpp"
 #include "server/recording/record.hpp"
 
@@ -44,6 +45,7 @@ Result<api::CaptureArchive> LiveCell::archive(const LiveSensor& sensor, std::spa
   capture.sensor_id = sensor.id();
   capture.camera = sensor.camera();
   capture.views.assign(views.begin(), views.end());
+  bring_to_one_unit(capture.views);
   return archive_capture(capture, settings_.search_paths);
 }
 

@@ -129,14 +129,16 @@ std::string PoseWatch::doubt() const {
     case Doubt::restored:
       break;
   }
-  return "no check has passed since the pose was restored; it is checked when the robot holds still in view";
+  return "no check has passed since the pose was restored or activated; it is checked when the robot holds "
+         "still in view";
 }
 
 std::string PoseWatch::drift() const {
   switch (drift_) {
     case Drift::background_moved:
-      return "the sensor has moved: what stands around the robot is no longer where it saw it; calibrate "
-             "again, or wait for it where drift.healing does so";
+      return "the sensor has moved: what stands around the robot, or the robot itself, is no longer where "
+             "the "
+             "pose puts it; calibrate again, or wait for it where drift.healing does so";
     case Drift::robot_off:
       return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
              "stood before it, activate the calibration again";

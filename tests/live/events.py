@@ -5,13 +5,14 @@
 
 A verdict is judged as scripts/watch.sh does it: that the sensor has moved, if it was ever said; else what is right, if it was
 shown for 2 s; else what was shown for longest besides `in_place`. 12 s for each event, 30 s for joint zeros. JSON lines, then
-a table.      usage: events.py [--rounds N] [--seed S] [--event VERDICT] [--knocks-first]"""
+a table.      usage: events.py [--rounds N] [--seed S] [--event VERDICT] [--knocks-first] [--require]"""
 
 import argparse
 import collections
 import math
 import random
 import statistics
+import sys
 import time
 
 from healing import direction
@@ -23,15 +24,18 @@ VERDICTS = ("in_place", "sensor_moved", "something_in_front", "scene_changed", "
 WATCHED_S, TWO_POSTURES_S, QUIET_S = 12, 30, 2
 LASTING_S, LEAST_S, PERIOD_S = 2.0, 0.3, 0.03
 TRUE_MM, TRUE_MRAD = 3.0, 3.0
+UNSEEN_S = 4.0  # for so long nobody sees the sensor that was knocked
+LEAST_RIGHT = 0.95
 ERRORS, MODE = f"/sensors/{SENSOR}/errors", f"/sensors/{SENSOR}/mode"
 
 
 class Stage:
     """One event: what it is called, what is right to say, how it is staged and taken back."""
 
-    def __init__(self, right: str, what: str, calls: list, back: list, creeping=None):
+    def __init__(self, right: str, what: str, calls: list, back: list, creeping=None, later=()):
         self.right, self.what, self.calls, self.back = right, what, calls, back
         self.creeping = creeping  # called again and again with the seconds since the beginning
+        self.later = later  # calls after UNSEEN_S
 
     def watched_s(self) -> int:
         return TWO_POSTURES_S if self.right == "robot_model_wrong" else WATCHED_S
@@ -96,6 +100,19 @@ def no_frames() -> Stage:
     return Stage("no_evidence", "frames stop", [("PUT", MODE, {"mode": "silent"})], [("PUT", MODE, {"mode": "normal"})])
 
 
+def unseen_knocks(source: random.Random, usual: dict) -> list[Stage]:
+    """The sensor is moved while it sees nothing, or sends nothing."""
+    hidden = {"in the dark": ((ERRORS, {"depth": {"dropout": 1}}), (ERRORS, {"depth": {"dropout": usual["dropout"]}})),
+              "while frames stop": ((MODE, {"mode": "silent"}), (MODE, {"mode": "normal"})),
+              "while its driver hangs": ((MODE, {"mode": "hanging"}), (MODE, {"mode": "normal"}))}
+    stages = []
+    for what, (hide, show) in hidden.items():
+        stage = knock(source, source.uniform(8, 30), source.uniform(8, 30))
+        stages.append(Stage(stage.right, f"{stage.what}, {what}", [("PUT", *hide), *stage.calls],
+                            [("PUT", *show), *stage.back], later=[("PUT", *show)]))
+    return stages
+
+
 def stages_of(source: random.Random, usual: dict, knocks_first: bool) -> list[Stage]:
     boxes = ["box_blue", "box_tall", "box_red"]
     source.shuffle(boxes)
@@ -104,6 +121,7 @@ def stages_of(source: random.Random, usual: dict, knocks_first: bool) -> list[St
     others = [Stage("in_place", "nothing", [], []), person(source, 0.6, 1.0), person(source, -1.2, 0.0),
               box(source, boxes[0], False), box(source, boxes[1], True), robot_brought(), joint_zero(source), joint_zero(source),
               range_off(source, usual, False), range_off(source, usual, True), dark(usual), no_frames()]
+    knocks += unseen_knocks(source, usual)
     return knocks + others if knocks_first else others + knocks
 
 
@@ -123,7 +141,11 @@ class Listener:
 
     def listen(self, seconds: float, staged: bool) -> None:
         begin = last = time.monotonic()
+        later = list(self.stage.later) if staged else []
         while last - begin < seconds:
+            if later and last - begin >= UNSEEN_S:
+                tell(self.simulator, later)
+                later = []
             if staged and self.stage.creeping:
                 tell(self.simulator, [self.stage.creeping(last - begin)])
             verdict = drift(self.daemon)["verdict"]
@@ -198,7 +220,8 @@ def run_event(simulator, daemon, stage: Stage) -> dict:
             "recovered": recover(simulator, daemon, stage)}
 
 
-def show(lines: list[dict]) -> None:
+def show(lines: list[dict]) -> bool:
+    """Whether all is as it must be."""
     counts = collections.Counter((line["event"], line["verdict"]) for line in lines)
     rows = []
     for event in VERDICTS:
@@ -218,6 +241,8 @@ def show(lines: list[dict]) -> None:
     for line in lines:
         if line["event"] != line["verdict"] or line in false:
             print(f"  {line['what']}: {line['verdict']} {line['seconds']}, pose before {line['pose_before']}")
+    missed = [line for line in lines if line["event"] == "sensor_moved" and line["verdict"] != "sensor_moved"]
+    return right >= LEAST_RIGHT * len(lines) and not missed and not wrong
 
 
 def main() -> None:
@@ -227,6 +252,7 @@ def main() -> None:
     parser.add_argument("--event", choices=VERDICTS, help="those alone")
     parser.add_argument("--knocks-first", action="store_true",
                         help="the other events are then seen from a pose that a healing has found, and from its background")
+    parser.add_argument("--require", action="store_true", help="exit status 1 unless all is as it must be")
     options = parser.parse_args()
     lines = []
     for number in range(options.rounds):
@@ -236,7 +262,8 @@ def main() -> None:
                 if options.event in (None, stage.right):
                     lines.append({"seed": seed} | run_event(simulator, daemon, stage))
                     say(**lines[-1])
-    show(lines)
+    is_well = show(lines)
+    sys.exit(0 if is_well or not options.require else 1)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@
 Each knock shifts the sensor by 30 mm and turns it by 3 degrees in directions drawn at random, within 50 mm and 6 degrees
 of where it began; after four of them there is another cell. The pose is asked for every 20 ms. JSON lines, then a table.
 
-usage: healing.py [KNOCKS [SEED]] [--slow]     default: 10 knocks; --slow: the robot moves as in the demo, 0.5 rad/s"""
+usage: healing.py [KNOCKS [SEED]] [--slow] [--require]     default: 10 knocks; --slow: the robot moves as in the demo, 0.5 rad/s"""
 
 import http.client
 import json
@@ -23,7 +23,7 @@ from poses import axis_turn, difference, multiply
 
 SHIFT_M, TURN_DEG = 0.030, 3.0
 FARTHEST_MM, FARTHEST_MRAD = 50, 105
-WRONG_MM, WRONG_MRAD = 3.0, 3.0
+WRONG_MM, WRONG_MRAD, MUST_S = 3.0, 3.0, 5.0
 PERIOD_S, PATIENCE_S, AFTERWARDS_S = 0.02, 90.0, 5.0
 KNOCKS_PER_CELL = 4  # a sensor that moves more often within ten minutes is made to wait, lest it be calibrated without end
 POSE = f"/api/v1/sensors/{SENSOR}/pose"
@@ -188,7 +188,8 @@ ROWS = (("knock to `valid` = false, s", "found_s"), ("knock to the new valid pos
         ("error of the new pose, mm", "mm"), ("error, mrad", "mrad"), ("sigma told, mm", "sigma_mm"), ("sigma told, mrad", "sigma_mrad"))
 
 
-def show(lines: list[dict]) -> None:
+def show(lines: list[dict]) -> bool:
+    """Whether all is as it must be."""
     healed = [line for line in lines if not math.isnan(line["healed_s"])]
     rows = []
     for name, key in ROWS:
@@ -199,6 +200,7 @@ def show(lines: list[dict]) -> None:
           f"{sum(line['healed_s'] <= 5 for line in healed)}; valid again more than once: {sum(l['rises_of_valid'] > 1 for l in lines)}; "
           f"answers valid though off by more than {WRONG_MM:.0f} mm or mrad: {sum(l['wrong_though_valid'] for l in lines)} of "
           f"{sum(l['asked'] for l in lines)}, after it had been found: {sum(l['wrong_after_found'] for l in lines)}; {machine()}")
+    return all(line["healed_s"] <= MUST_S and not line["wrong_after_found"] for line in lines)
 
 
 def rounded(line: dict) -> dict:
@@ -219,7 +221,8 @@ def main(arguments: list[str]) -> None:
                 say(knock=len(lines), seed=seed, **rounded(line))
                 if math.isnan(line["healed_s"]):
                     break  # another cell
-    show(lines)
+    is_well = show(lines)
+    sys.exit(0 if is_well or "--require" not in arguments else 1)
 
 
 if __name__ == "__main__":

@@ -189,6 +189,16 @@ TEST_F(DriftWatchTest, WhatNeitherBackgroundNorRobotHasShownForTwoSecondsIsOutOf
   EXPECT_FALSE(watch_.is_out_of_sight());
 }
 
+TEST_F(DriftWatchTest, InTheDarkItIsOutOfSightAtOnce) {
+  watch_for(3);
+  dark_share_ = 1;
+  watch_for(0.4);
+  EXPECT_FALSE(watch_.is_out_of_sight());
+  watch_for(0.3);
+  EXPECT_TRUE(watch_.is_dark());
+  EXPECT_TRUE(watch_.is_out_of_sight());
+}
+
 TEST_F(DriftWatchTest, WhereAMovedSensorIsIsToldNoLongerOnceItSeesNothingOfTheBackground) {
   watch_for(1);
   moved_ = shifted(0.03, 0, 0);

@@ -39,7 +39,7 @@ PostureMean mean_of(int postures, const Vector6d& delta, double sigmas = 1) {
   PostureMean mean;
   double now_s = 0;
   for (int i = 0; i < postures; ++i) {
-    mean.add(looks_displaced(delta, place(i), sigmas), joints(i));
+    mean.add(looks_displaced(delta, place(i), sigmas), joints(i), now_s);
     mean.end_posture(now_s += 10);
   }
   return mean;
@@ -69,7 +69,7 @@ TEST(PostureMean, OneThatDisagreesIsLeftOut) { EXPECT_FALSE(mean_of(40, some_del
 
 TEST(PostureMean, ManyComparisonsOfOnePostureAreOne) {
   PostureMean mean;
-  for (int i = 0; i < 500; ++i) mean.add(looks_displaced(some_delta(), place(0)), joints(0));
+  for (int i = 0; i < 500; ++i) mean.add(looks_displaced(some_delta(), place(0)), joints(0), i);
   mean.end_posture(10);
   EXPECT_FALSE(mean.shift());
 }
@@ -78,7 +78,7 @@ TEST(PostureMean, PosturesThatComeAgainAreNoOthers) {
   PostureMean mean;
   double now_s = 0;
   for (int i = 0; i < 500; ++i) {
-    mean.add(looks_displaced(some_delta(), place(i % 4)), joints(i % 4));
+    mean.add(looks_displaced(some_delta(), place(i % 4)), joints(i % 4), now_s);
     mean.end_posture(now_s += 10);
   }
   EXPECT_FALSE(mean.shift()) << "four postures, however often";
@@ -88,7 +88,7 @@ TEST(PostureMean, ForgetsPosturesThatManyHaveFollowed) {
   PostureMean mean = mean_of(30, some_delta());
   double now_s = 300;
   for (int i = 0; i < 60; ++i) {
-    mean.add(looks_displaced(Vector6d::Zero(), place(i)), joints(100 + i));
+    mean.add(looks_displaced(Vector6d::Zero(), place(i)), joints(100 + i), now_s);
     mean.end_posture(now_s += 10);
   }
   EXPECT_LT(mean.shift()->turn_shift.norm(), 1e-5);
@@ -96,11 +96,10 @@ TEST(PostureMean, ForgetsPosturesThatManyHaveFollowed) {
 
 TEST(PostureMean, ForgetsWhatIsMoreThanAnHourAgo) {
   PostureMean mean = mean_of(20, some_delta());
-  mean.add(looks_displaced(some_delta(), place(0)), joints(100));
+  mean.add(looks_displaced(some_delta(), place(0)), joints(100), 200 + 3500);
   mean.end_posture(200 + 3500);
   ASSERT_TRUE(mean.shift());
-  mean.add(looks_displaced(some_delta(), place(1)), joints(101));
-  mean.end_posture(200 + 3601);
+  mean.add(looks_displaced(some_delta(), place(1)), joints(101), 200 + 3601);
   EXPECT_FALSE(mean.shift()) << "one posture of now, the others of more than an hour ago";
 }
 

@@ -32,6 +32,15 @@ TEST(RobotWord, PosturesOnEndDoAndGoodOnesTakeItBack) {
   EXPECT_TRUE(word.is_against_no_more());
 }
 
+TEST(RobotWord, WhatOneMotionShowsIsNoDoubtThatHolds) {
+  RobotWord word;
+  for (int i = 0; i < 9; ++i) word.add(looks_off(6), posture(i), 0.1 * i);
+  EXPECT_TRUE(word.has_doubt());
+  EXPECT_FALSE(word.is_against());
+  for (int i = 9; i < 12; ++i) word.add(looks_off(6), posture(i), 0.1 * i);
+  EXPECT_TRUE(word.is_against());
+}
+
 TEST(RobotWord, WhatAGoodModelLooksLikeIsNoDoubt) {
   RobotWord word;
   for (int i = 0; i < 1000; ++i) word.add(looks_off(2.2), posture(i), i);

@@ -46,10 +46,11 @@ class Healing : public ::testing::Test {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, patience, [&] { return requests_.size() >= requests; });
   }
-  void set_state(api::PoseState state) {
+  void set_state(api::PoseState state, const std::string& calibration = "c0") {
     api::PoseReport pose;
     pose.sensor_id = "eye";
     pose.state = state;
+    pose.known.emplace().calibration_id = calibration;
     healer_->on_pose(pose);
   }
   void end(const std::string& id, api::JobStatus status, bool activate = true, double sigma_m = 1e-4) {
@@ -201,6 +202,15 @@ TEST_F(Healing, WhatIsFoundAfterThePoseWasPutRightIsNoCandidate) {
   set_state(api::PoseState::calibrated);
   end("c1", api::JobStatus::succeeded, false);
   EXPECT_EQ(healer_->candidate("eye"), "");
+}
+
+TEST_F(Healing, APoseThatHasDriftedBeforeItWasHeardOfIsFoundAgain) {
+  begin(HealingMode::automatic);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::succeeded);
+  set_state(api::PoseState::drifted, "c1");
+  ASSERT_TRUE(wait_for(2, 5s)) << "without the pause after an attempt";
 }
 
 TEST_F(Healing, OffDoesNothing) {

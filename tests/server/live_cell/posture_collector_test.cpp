@@ -119,6 +119,19 @@ TEST(FrameAverage, LargeDepthsStayWithinSixteenBits) {
   EXPECT_NEAR(average.depth.depth_m(0, 0), 60.0, 1e-9);
 }
 
+TEST(FrameAverage, ViewsOfOneCaptureHaveOneUnit) {
+  const std::vector<View> far{view(0, 60000), view(0, 60001)}, near{view(1, 1000), view(1, 1001)};
+  std::vector<View> views{average_views(near), view(2, 1500), average_views(near)};
+  bring_to_one_unit(views);
+  for (const View& each : views) EXPECT_EQ(each.depth.scale_m, views[0].depth.scale_m);
+  EXPECT_NEAR(views[0].depth.depth_m(0, 0), 1.0005, 1e-9) << "digits are kept where they fit";
+  EXPECT_NEAR(views[1].depth.depth_m(0, 0), 1.5, 1e-9);
+  views.push_back(average_views(far));
+  bring_to_one_unit(views);
+  EXPECT_NEAR(views[0].depth.depth_m(0, 0), 1.0005, 1e-3);
+  EXPECT_NEAR(views[3].depth.depth_m(0, 0), 60.0005, 1e-3);
+}
+
 TEST(FrameAverage, ImagesAreAveragedOnlyWhenEveryFrameHasOne) {
   std::vector<View> views{view(0), view(0)};
   views[0].image = GreyImage{2, 1, {10, 20}};
