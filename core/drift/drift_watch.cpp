@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kGap_s = 1.5;  // between frames: the sensor was away
 constexpr int kQuietFrames = 10;
-constexpr double kLost_s = 0.5;     // a background that is nowhere for so long: the sensor looks elsewhere
+/// A background that is nowhere for so long: the sensor looks elsewhere; sooner where it is seen from there.
+constexpr double kLost_s = 0.5, kElsewhere_s = 0.3;
+constexpr int kFoundAgain = 5;      // frames on end that show it where it was
 constexpr double kLeastGone = 0.2;  // share of it that lies farther: nobody who stands in front does that
 constexpr double kLeastLeft = 0.1;  // share of it that is where it was
 /// Where a moved sensor is now is told pixel by pixel only when so much of the background is still where it
@@ -74,7 +76,7 @@ void DriftWatch::start_over() {
   T_learnt_now_.reset();
   robot_word_.reset();
   moved_ = bias_changed_ = model_wrong_ = is_refined_ = lies_elsewhere_ = false;
-  quiet_frames_ = 0;
+  quiet_frames_ = found_frames_ = 0;
   lost_since_s_ = offset_over_s_ = learnt_s_ = alarmed_since_s_ = -1;
   evidence_s_ = risen_s_ = in_front_s_ = denied_s_ = denied_since_s_ = -1e9;
   offset_m_ = 0;
@@ -96,10 +98,8 @@ const DriftReport& DriftWatch::add_frame(const View& frame) {
     if (!frame.joint_positions_rad.empty()) robot = robot_.at(frame.joint_positions_rad, T_base_sensor_);
     auto observation = matcher_.match(frame.depth, robot, T_base_sensor_.linear());
     if (!observation.has_evidence && frames_ % kRealignEvery == 0) realign(robot, observation);
-    if (observation.has_evidence) {
-      evidence_s_ = frame_s_;
-      lies_elsewhere_ = false;
-    }
+    if (observation.has_evidence) evidence_s_ = frame_s_;
+    if (observation.has_evidence && !observation.realigned) lies_elsewhere_ = false;
     const bool had_moved = moved_;
     follow_loss(observation, frame_s_);
     test(observation);
@@ -225,11 +225,13 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
   const bool elsewhere = lies_elsewhere_ || observation.share(CellState::farther) >= kLeastGone ||
                          (observation.share(CellState::same) < kLeastLeft && robot_word_.is_off(frame_s_));
   const bool lost = !observation.has_evidence && elsewhere;
-  if (observation.has_evidence || observation.share(CellState::dark) > kDarkShare) lost_since_s_ = -1;
+  const bool is_where_it_was = observation.has_evidence && !observation.realigned;
+  found_frames_ = is_where_it_was ? found_frames_ + 1 : 0;
+  if (found_frames_ >= kFoundAgain || observation.share(CellState::dark) > kDarkShare) lost_since_s_ = -1;
   if (!lost) return;
   if (lost_since_s_ < 0 || now_s - lost_s_ > kGap_s) lost_since_s_ = now_s;
   lost_s_ = now_s;
-  if (now_s - lost_since_s_ < kLost_s) return;
+  if (now_s - lost_since_s_ < (lies_elsewhere_ ? kElsewhere_s : kLost_s)) return;
   if (!robot_word_.agrees_since(lost_since_s_, frame_s_))
     moved_ = true;
   else

@@ -135,7 +135,7 @@ class DriftWatch {
   std::optional<Pose> T_learnt_now_;         // of the last realignment
   std::vector<std::uint8_t> carried_;
   bool moved_ = false, is_refined_ = false, lies_elsewhere_ = false;
-  int frames_ = 0, quiet_frames_ = 0;
+  int frames_ = 0, quiet_frames_ = 0, found_frames_ = 0;
   double frame_s_ = 0, evidence_s_ = -1e9, lost_since_s_ = -1, lost_s_ = -1e9, absorbed_s_ = 0,
          learnt_s_ = -1;
   BackgroundWord word_;

@@ -200,6 +200,13 @@ TEST_F(BeforeAWall, AKnockAfterWhichTheWallIsNowhereNearIsFoundByTheWallAlone) {
   EXPECT_EQ(watch_for(1.5), DriftVerdict::sensor_moved);
 }
 
+TEST_F(BeforeAWall, AFrameThatSeemsToShowItWhereItWasDoesNotBeginTheSearchAnew) {
+  watch_for(2);
+  const auto knock = turned(0.15, 0, 0);
+  watch_for(1, [&] { moved_ = frames_ % 8 == 0 ? Vector6d(Vector6d::Zero()) : knock; });
+  EXPECT_EQ(verdict(), DriftVerdict::sensor_moved);
+}
+
 TEST_F(BeforeAWall, ABoardHeldBeforeItIsNoKnock) {
   watch_for(1);
   room_.hidden_share = 0.7;
