@@ -21,6 +21,8 @@ class Connection {
   /// `tls`: null for a plain connection.
   Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<Tls> tls)
       : tcp_(std::move(socket)), shared_(std::move(tls)) {
+    boost::system::error_code ignored;
+    tcp_.socket().non_blocking(true, ignored);  // what is written without waiting must not wait
     if (shared_) tls_.emplace(tcp_, shared_->context);
   }
 

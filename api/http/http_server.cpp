@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/http/http_server.hpp"
 
+#include <netinet/tcp.h>
+
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
@@ -33,6 +35,10 @@ using ErrorCode = boost::system::error_code;
 /// Refused connections that are being told so at a time; beyond it they are just closed.
 constexpr std::size_t kMaxRefusals = 32;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+/// Bytes of an answer that wait in the kernel until the client has room for them. Without a limit the kernel
+/// takes megabytes for each of them, and the network thread spends its time on copying them.
+constexpr int kMostUnsent = 128 * 1024;
+using NotSentLowWater = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
 
 }  // namespace
 
@@ -45,7 +51,9 @@ class HttpServer::Impl {
         watch_(watch ? *watch : own_watch_),
         workers_(std::make_unique<asio::thread_pool>(static_cast<std::size_t>(settings.workers))),
         max_connections_(static_cast<std::size_t>(settings.max_connections)),
-        context_{settings_, router, log_, *workers_, std::make_shared<Doorkeeper>(settings.door), watch_} {}
+        pending_(settings.most_unread, watch_.unread_bytes),
+        context_{settings_, router,  log_, *workers_, std::make_shared<Doorkeeper>(settings.door),
+                 watch_,    pending_} {}
 
   ~Impl() {
     stop(std::chrono::milliseconds(0));
@@ -64,6 +72,9 @@ class HttpServer::Impl {
     tls_ = std::move(entrance.tls);
     ErrorCode failure;
     acceptor_.assign(entrance.address->is_v6() ? tcp::v6() : tcp::v4(), entrance.address->release(), failure);
+    ErrorCode ignored;                                   // connections are served without, only not as well
+    acceptor_.set_option(tcp::no_delay(true), ignored);  // connections inherit them
+    acceptor_.set_option(NotSentLowWater(kMostUnsent), ignored);
     if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
     if (failure)
       return Error{HttpServerError::cannot_listen, settings_.address + " (" + failure.message() + ")"};
@@ -119,7 +130,6 @@ class HttpServer::Impl {
         co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, failure));
         continue;
       }
-      socket.set_option(tcp::no_delay(true), failure);
       begin_session(std::move(socket));
     }
   }
@@ -162,6 +172,7 @@ class HttpServer::Impl {
   std::unique_ptr<asio::thread_pool> workers_;
   std::size_t max_connections_;  // used on the network thread only, as what follows up to port_
   std::shared_ptr<Tls> tls_;     // null: plain HTTP
+  PendingAnswers pending_;
   SessionContext context_;
   std::list<Session> sessions_;
   asio::io_context io_{1};

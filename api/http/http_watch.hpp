@@ -12,6 +12,7 @@ struct HttpWatch {
   Counter accepted;          ///< connections that were served
   Counter refused;           ///< connections there was no room for
   Counter unreadable;        ///< requests that could not be read
+  Gauge unread_bytes;        ///< of answers that clients have not taken yet
   Heartbeat network_thread;  ///< beats while it goes on
 };
 

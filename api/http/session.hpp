@@ -9,6 +9,7 @@
 #include "api/http/header_gate.hpp"
 #include "api/http/http_server.hpp"
 #include "api/http/peer.hpp"
+#include "api/http/pending_answers.hpp"
 #include "api/http/request_id.hpp"
 #include "api/http/request_message.hpp"
 
@@ -22,6 +23,7 @@ struct SessionContext {
   boost::asio::thread_pool& workers;
   std::shared_ptr<Doorkeeper> door;  ///< replaced by a reload
   HttpWatch& watch;
+  PendingAnswers& pending;
   RequestIds request_ids = {};
   bool stopping = false;
 };
@@ -55,6 +57,8 @@ class Session {
   boost::asio::awaitable<Response> dispatch(const Request& request);
   boost::asio::awaitable<Response> ask_again(const Request& request, Response response);
   boost::asio::awaitable<bool> write(Response response, bool head, bool keep_alive);
+  boost::asio::awaitable<bool> send(std::string_view header, std::string_view body);
+  boost::asio::awaitable<bool> send_rest(std::string_view header, std::string_view body, std::size_t sent);
   boost::asio::awaitable<std::string> next_of(BodyStream& stream);
   boost::asio::awaitable<void> write_stream(const Request& request, Response response);
   boost::asio::awaitable<void> end_with(Response response);

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 // What a session writes.
+#include <algorithm>
+#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/write.hpp>
+#include <boost/beast/http/status.hpp>
 
 #include "api/http/session.hpp"
 #include "api/routes/responses.hpp"
@@ -20,18 +20,36 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::size_t kReadAtOnce = 4096;
+constexpr std::size_t kSentAtOnce = 64 * 1024;
 constexpr auto kDrainTime = std::chrono::seconds(1);
 constexpr std::size_t kMostForgotten = 4 * 1024 * 1024;
 
-template <class Body>
-http::response<Body> heading(const Response& response, const std::string& request_id, bool keep_alive) {
-  http::response<Body> message{static_cast<http::status>(response.status), 11};
-  for (const auto& [name, value] : response.headers) message.insert(name, value);
-  message.set(http::field::server, "calibrd");
-  message.set("X-Content-Type-Options", "nosniff");
-  message.set("X-Request-Id", request_id);
-  message.keep_alive(keep_alive);
-  return message;
+/// A line break in a value would begin another header.
+void append_header(std::string& text, const std::string& name, std::string value) {
+  std::ranges::replace_if(
+      value, [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  text.append(name).append(": ").append(value).append("\r\n");
+}
+
+std::string heading(const Response& response, const std::string& request_id, bool keep_alive,
+                    std::optional<std::size_t> length) {
+  const auto reason = http::obsolete_reason(static_cast<http::status>(response.status));
+  std::string text = "HTTP/1.1 " + std::to_string(response.status) + " ";
+  text.append(reason.data(), reason.size()).append("\r\n");
+  for (const auto& [name, value] : response.headers) append_header(text, name, value);
+  text.append("Server: calibrd\r\nX-Content-Type-Options: nosniff\r\nX-Request-Id: ").append(request_id);
+  if (!keep_alive) text += "\r\nConnection: close";
+  if (length) text.append("\r\nContent-Length: ").append(std::to_string(*length));
+  return text += "\r\n\r\n";
+}
+
+/// The next bytes of header and body: few enough that a large answer does not keep the network thread from
+/// the others.
+std::array<asio::const_buffer, 2> next_part(std::string_view header, std::string_view body,
+                                            std::size_t sent) {
+  const auto of_header = header.substr(std::min(sent, header.size()));
+  const auto of_body = body.substr(sent - std::min(sent, header.size()));
+  return {asio::buffer(of_header), asio::buffer(of_body.substr(0, kSentAtOnce))};
 }
 
 }  // namespace
@@ -47,17 +65,13 @@ asio::awaitable<void> Session::refuse() {
 asio::awaitable<void> Session::write_stream(const Request& request, Response response) {
   const bool head = request.method == "HEAD";
   const auto scope = context_.router.scope(request);
-  auto message = heading<http::empty_body>(response, request_id_, false);
-  stream_.expires_after(context_.settings.write_timeout);
-  beast::error_code failure;
-  co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
+  const auto header = heading(response, request_id_, false, std::nullopt);
+  bool goes_on = co_await send(header, {});
   asio::steady_timer pause(stream_.get_executor());
-  while (!failure && !head && !context_.stopping && context_.door->still_admits(request, scope, peer_)) {
+  while (goes_on && !head && !context_.stopping && context_.door->still_admits(request, scope, peer_)) {
     const std::string text = co_await next_of(*response.stream);
     if (!text.empty()) {
-      stream_.expires_after(context_.settings.write_timeout);
-      co_await asio::async_write(stream_, asio::buffer(text),
-                                 asio::redirect_error(asio::use_awaitable, failure));
+      goes_on = co_await send({}, text);
       continue;
     }
     if (response.stream->has_ended()) break;
@@ -75,19 +89,50 @@ asio::awaitable<std::string> Session::next_of(BodyStream& stream) {
 
 asio::awaitable<bool> Session::write(Response response, bool head, bool keep_alive) {
   const bool bodiless = response.status == 204 || response.status == 304;
-  stream_.expires_after(context_.settings.write_timeout);
-  beast::error_code failure;
-  if (head || bodiless) {
-    auto message = heading<http::empty_body>(response, request_id_, keep_alive);
-    if (!bodiless) message.content_length(response.body.size());
-    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
-  } else {
-    auto message = heading<http::string_body>(response, request_id_, keep_alive);
-    message.body() = std::move(response.body);
-    message.prepare_payload();
-    co_await http::async_write(stream_, message, asio::redirect_error(asio::use_awaitable, failure));
+  const std::string_view body = response.text();
+  const auto length = bodiless ? std::nullopt : std::optional(body.size());
+  const auto header = heading(response, request_id_, keep_alive, length);
+  const auto sent_body = head || bodiless ? std::string_view() : body;
+  const bool is_sent = co_await send(header, sent_body);
+  co_return keep_alive&& is_sent;
+}
+
+/// Most answers go out in one piece, at once: no deadline, no turn of the network thread. False: the
+/// connection has failed.
+asio::awaitable<bool> Session::send(std::string_view header, std::string_view body) {
+  std::size_t sent = 0;
+  if (!stream_.has_tls()) {
+    beast::error_code failure;
+    const auto part = next_part(header, body, 0);
+    sent = stream_.socket().write_some(part, failure);
+    if (failure && failure != asio::error::would_block) co_return false;
   }
-  co_return keep_alive && !failure;
+  if (sent == header.size() + body.size()) co_return true;
+  const bool is_sent = co_await send_rest(header, body, sent);
+  co_return is_sent;
+}
+
+/// As the client takes it, with a deadline for each piece and one in all.
+asio::awaitable<bool> Session::send_rest(std::string_view header, std::string_view body, std::size_t sent) {
+  using Clock = std::chrono::steady_clock;
+  const auto size = header.size() + body.size();
+  const auto& settings = context_.settings;
+  const auto deadline = Clock::now() + settings.write_timeout;
+  const auto* const owner = body.empty() ? header.data() : body.data();
+  PendingAnswers::Answer answer(context_.pending, owner, size, [this] { close(); });
+  while (sent < size) {
+    const auto left = deadline - Clock::now();
+    if (left <= Clock::duration::zero()) co_return false;
+    stream_.expires_after(std::min<Clock::duration>(settings.stall_timeout, left));
+    beast::error_code failure;
+    const auto part = next_part(header, body, sent);
+    const auto taken =
+        co_await stream_.async_write_some(part, asio::redirect_error(asio::use_awaitable, failure));
+    if (failure) co_return false;
+    sent += taken;
+    answer.note_progress();
+  }
+  co_return true;
 }
 
 /// Answers and ends the connection. Closed with bytes unread it would be reset, and the answer be lost with

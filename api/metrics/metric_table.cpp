@@ -24,6 +24,7 @@ constexpr std::array kTable{
     MetricFamily{"calibrd_http_connections_accepted_total", counter, "", "Connections that were served."},
     MetricFamily{"calibrd_http_connections_refused_total", counter, "", "Connections that were told 503, or closed, because there were server.max_connections already."},
     MetricFamily{"calibrd_http_unreadable_requests_total", counter, "", "Requests that could not be read: no HTTP, too large, too slow, or broken off."},
+    MetricFamily{"calibrd_http_unread_bytes", gauge, "", "Of answers that clients have not taken yet; one that several are sent counts once."},
     MetricFamily{"calibrd_event_subscribers", gauge, "", "Listeners to /api/v1/events."},
 
     MetricFamily{"calibrd_robot_connected", gauge, "", "1 while joints of the robot come in."},

@@ -24,6 +24,7 @@ struct Request {
   std::string request_id = {};   ///< of this request in logs and answers
   std::string caller = {};       ///< name of the token, "local" where none is asked for; empty: unknown
   Scope granted = Scope::admin;  ///< what the caller may do
+  std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now();
 
   /// The header's value, or an empty string.
   const std::string& header(const std::string& lower_case_name) const {
@@ -51,11 +52,15 @@ struct Response {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< Content-Type included
   std::string body;
+  std::shared_ptr<const std::string> shared_body = nullptr;  ///< instead of `body`: that of others, too
   /// The client would rather wait for another answer than have this one: ask again until there is one, for at
   /// most this long.
   std::chrono::milliseconds worth_waiting{0};
   std::shared_ptr<BodyStream> stream = nullptr;  ///< instead of `body`, until the client or the daemon ends
   int route = -1;  ///< place in Router::routes() of what has answered; -1: none of them
+
+  /// What is sent, where there is no stream.
+  const std::string& text() const { return shared_body ? *shared_body : body; }
 };
 
 /// Splits "/path?a=1&b" and decodes it; nothing when it cannot be decoded.

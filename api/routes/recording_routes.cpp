@@ -8,6 +8,7 @@
 #include "api/routes/header_numbers.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
+#include "api/routes/shared_answers.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -81,10 +82,11 @@ void add_recording_routes(Router& router, CellService& service) {
   constexpr std::array kKinds{std::pair{"measured", CloudKind::measured},
                               std::pair{"virtual", CloudKind::virtual_},
                               std::pair{"residual", CloudKind::residual}};
+  const auto shared = std::make_shared<SharedAnswers>();
   for (const auto& [name, kind] : kKinds)
     router.add("GET", std::string("/api/v1/sensors/{id}/clouds/") + name, Scope::read, Cost::slow,
-               [&service, kind = kind](const Request& request, const PathValues& values) {
-                 return answer_cloud(kind, request, values, service);
+               [&service, shared, kind = kind](const Request& request, const PathValues& values) {
+                 return shared->get(request, [&] { return answer_cloud(kind, request, values, service); });
                });
 }
 

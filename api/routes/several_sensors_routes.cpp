@@ -8,6 +8,7 @@
 #include "api/routes/header_numbers.hpp"
 #include "api/routes/responses.hpp"
 #include "api/routes/routes.hpp"
+#include "api/routes/shared_answers.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -79,10 +80,11 @@ Response answer_cross_checks(const Request& request, CellService& service) {
 }  // namespace
 
 void add_several_sensors_routes(Router& router, CellService& service) {
-  router.add("GET", "/api/v1/cell/cloud", Scope::read, Cost::slow,
-             [&service](const Request& request, const PathValues&) {
-               return answer_merged_cloud(request, service);
-             });
+  router.add(
+      "GET", "/api/v1/cell/cloud", Scope::read, Cost::slow,
+      [&service, shared = std::make_shared<SharedAnswers>()](const Request& request, const PathValues&) {
+        return shared->get(request, [&] { return answer_merged_cloud(request, service); });
+      });
   router.add("GET", "/api/v1/cell/cross-checks", Scope::read, Cost::slow,
              [&service](const Request& request, const PathValues&) {
                return answer_cross_checks(request, service);

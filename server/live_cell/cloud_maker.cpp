@@ -16,8 +16,8 @@ std::int64_t nanoseconds(Clock::time_point time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
 }
 
-Eigen::Vector3f point_at(const CameraModel& camera, int x, int y, double depth_m) {
-  return (camera.ray(x, y) * depth_m).cast<float>();
+Eigen::Vector3f point_at(const PixelRays& rays, int x, int y, double depth_m) {
+  return (rays.at(x, y) * depth_m).cast<float>();
 }
 
 void move_to_base(Cloud& cloud, const Pose& T_base_sensor, const std::string& base_frame) {
@@ -53,10 +53,11 @@ Result<Cloud> CloudMaker::measured(const LiveSensor& sensor) const {
   Cloud cloud;
   cloud.frame_stamp_ns = nanoseconds(sighting->exposed);
   const auto& depth = sighting->view.depth;
+  const auto rays = cell_.pixel_rays(sensor.camera());
   for (int y = 0; y < depth.height; ++y)
     for (int x = 0; x < depth.width; ++x)
       if (depth.raw[depth.index(x, y)] != 0)
-        cloud.points.push_back(point_at(sensor.camera(), x, y, depth.depth_m(x, y)));
+        cloud.points.push_back(point_at(*rays, x, y, depth.depth_m(x, y)));
   return cloud;
 }
 
@@ -69,11 +70,12 @@ Result<Cloud> CloudMaker::virtual_cloud(const LiveSensor& sensor, const Pose& T_
   Cloud cloud;
   cloud.joint_stamp_ns = nanoseconds(joints->stamp);
   cloud.joint_positions_rad = joints->positions_rad;
+  const auto rays = cell_.pixel_rays(camera);
   std::size_t pixel = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x, ++pixel)
       if (measurement_.link[pixel] >= 0)
-        cloud.points.push_back(point_at(camera, x, y, measurement_.depth_m[pixel]));
+        cloud.points.push_back(point_at(*rays, x, y, measurement_.depth_m[pixel]));
   return cloud;
 }
 
@@ -90,12 +92,13 @@ Result<Cloud> CloudMaker::residual(const LiveSensor& sensor, const Pose& T_base_
   cloud.frame_stamp_ns = nanoseconds(sighting->exposed);
   cloud.joint_stamp_ns = cloud.frame_stamp_ns;  // interpolated at the frame's time
   cloud.joint_positions_rad = view.joint_positions_rad;
+  const auto rays = cell_.pixel_rays(camera);
   std::size_t pixel = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x, ++pixel) {
       if (measurement_.link[pixel] < 0 || view.depth.raw[pixel] == 0) continue;
       const double depth_m = view.depth.depth_m(x, y);
-      cloud.points.push_back(point_at(camera, x, y, depth_m));
+      cloud.points.push_back(point_at(*rays, x, y, depth_m));
       cloud.residual_m.push_back(
           static_cast<float>(depth_m - correction.measured(measurement_.depth_m[pixel])));
     }

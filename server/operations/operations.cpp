@@ -70,6 +70,7 @@ void Operations::write_http(api::MetricsText& text) const {
   one("calibrd_http_connections_accepted_total", http_watch_.accepted.value());
   one("calibrd_http_connections_refused_total", http_watch_.refused.value());
   one("calibrd_http_unreadable_requests_total", http_watch_.unreadable.value());
+  one("calibrd_http_unread_bytes", http_watch_.unread_bytes.value());
   one("calibrd_event_subscribers", events_->listeners());
 }
 

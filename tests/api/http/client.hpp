@@ -18,7 +18,9 @@ namespace http = boost::beast::http;
 /// A client that speaks the real bytes, blocking, with a deadline from the socket.
 class Client {
  public:
-  explicit Client(std::uint16_t port) : socket_(io_) {
+  /// `window`: bytes that it takes before they are read; 0: as usual.
+  explicit Client(std::uint16_t port, int window = 0) : socket_(io_, asio::ip::tcp::v4()) {
+    if (window > 0) socket_.set_option(asio::socket_base::receive_buffer_size(window));
     socket_.connect({asio::ip::make_address("127.0.0.1"), port});
     const timeval deadline{10, 0};
     setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof deadline);
@@ -39,6 +41,13 @@ class Client {
   std::string receive_until(const std::string& end) {
     std::string text;
     asio::read_until(socket_, asio::dynamic_buffer(text), end);
+    return text;
+  }
+  /// Whatever comes until the connection ends.
+  std::string receive_all() {
+    std::string text;
+    boost::system::error_code end;
+    asio::read(socket_, asio::dynamic_buffer(text), end);
     return text;
   }
   bool is_closed() {

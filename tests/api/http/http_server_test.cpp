@@ -50,6 +50,18 @@ TEST_F(HttpServerTest, ServesManyRequestsOnOneConnection) {
   EXPECT_EQ(log_[3].path, "/api/v1/sensors/kinect2/pose");
 }
 
+TEST_F(HttpServerTest, ALineBreakInAHeadersValueBeginsNoOther) {
+  router_.add("GET", "/odd", Scope::read, Cost::quick, [](const Request&, const PathValues&) {
+    Response response;
+    response.headers.emplace_back("Location", "/a\r\nSet-Cookie: b");
+    return response;
+  });
+  start();
+  const auto answer = Client(server_->port()).get("/odd");
+  EXPECT_EQ(answer["Location"], "/a  Set-Cookie: b");
+  EXPECT_EQ(answer.count("Set-Cookie"), 0U);
+}
+
 TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   start();
   Client client(server_->port());

@@ -97,7 +97,7 @@ TEST_F(CellRoutes, CaptureIsATarDownload) {
   };
   const auto response = ask("POST", "/api/v1/sensors/kinect2/captures", R"({"postures": 2, "timeout_s": 5})");
   EXPECT_EQ(response.status, 200);
-  EXPECT_EQ(response.body, "bytes");
+  EXPECT_EQ(response.text(), "bytes");
   EXPECT_EQ(header("Content-Type"), "application/x-tar");
   EXPECT_EQ(wanted.postures, 2);
   EXPECT_DOUBLE_EQ(wanted.timeout.count(), 5);
@@ -135,10 +135,10 @@ TEST_F(CellRoutes, CloudCarriesTheStampOfItsJoints) {
   EXPECT_EQ(response.status, 200);
   EXPECT_EQ(header("Calibrd-Joint-Stamp-Ns"), "123456789");
   EXPECT_EQ(header("Calibrd-Joint-Positions"), "0.1 -0.2");
-  EXPECT_NE(response.body.find("comment Calibrd-Joint-Stamp-Ns 123456789\n"), std::string::npos);
-  const auto header_end = response.body.find("end_header\n") + 11;
-  EXPECT_EQ(response.body.size() - header_end, 12U);
-  EXPECT_EQ(response.body.substr(header_end, 4), std::string("\0\0\x80\x3f", 4));
+  EXPECT_NE(response.text().find("comment Calibrd-Joint-Stamp-Ns 123456789\n"), std::string::npos);
+  const auto header_end = response.text().find("end_header\n") + 11;
+  EXPECT_EQ(response.text().size() - header_end, 12U);
+  EXPECT_EQ(response.text().substr(header_end, 4), std::string("\0\0\x80\x3f", 4));
   EXPECT_EQ(get("/api/v1/sensors/kinect2/clouds/virtual?frame=world").status, 400);
   EXPECT_EQ(get("/api/v1/sensors/kinect2/clouds/imaginary").status, 404);
 }

@@ -90,13 +90,13 @@ TEST_F(SeveralSensorsRoutes, MergedCloudCarriesTheSensorOfEachPointAndTheStampsO
   EXPECT_EQ(header("Calibrd-Sensor-1-Joint-Stamp-Ns"), "");
   EXPECT_EQ(header("Calibrd-Sensor-1-T-Base-Sensor"), "1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1");
   EXPECT_EQ(header("Calibrd-Left-Out"), "third pose_not_valid");
-  EXPECT_NE(response.body.find("property uchar sensor\n"), std::string::npos);
-  EXPECT_NE(response.body.find("comment Calibrd-Sensor-1 right\n"), std::string::npos);
-  const auto first = response.body.find("end_header\n") + 11;
-  ASSERT_EQ(response.body.size() - first, 3U * 13U);
-  EXPECT_EQ(response.body[first + 12], '\0');
-  EXPECT_EQ(response.body[first + 25], '\1');
-  EXPECT_EQ(response.body[first + 38], '\1');
+  EXPECT_NE(response.text().find("property uchar sensor\n"), std::string::npos);
+  EXPECT_NE(response.text().find("comment Calibrd-Sensor-1 right\n"), std::string::npos);
+  const auto first = response.text().find("end_header\n") + 11;
+  ASSERT_EQ(response.text().size() - first, 3U * 13U);
+  EXPECT_EQ(response.text()[first + 12], '\0');
+  EXPECT_EQ(response.text()[first + 25], '\1');
+  EXPECT_EQ(response.text()[first + 38], '\1');
   EXPECT_EQ(get("/api/v1/cell/cloud?robot=perhaps").status, 400);
 }
 
