@@ -31,7 +31,7 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   const std::lock_guard lock(mutex_);
   order_ = Order{T_base_sensor, background};
   has_pose_ = true;
-  newest_ = {};
+  newest_ = fresh_;
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
   in_place_ = wants_check_ = out_of_sight_ = contested_ = false;
   frames_seen_ = 0;

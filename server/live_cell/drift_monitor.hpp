@@ -16,7 +16,8 @@ namespace calibrd {
 /// from the sensor's thread; the rest is safe to call from any.
 class DriftMonitor {
  public:
-  explicit DriftMonitor(std::unique_ptr<DriftWatch> watch) : watch_(std::move(watch)) {}
+  explicit DriftMonitor(std::unique_ptr<DriftWatch> watch)
+      : watch_(std::move(watch)), fresh_(watch_->report()), newest_(fresh_) {}
 
   /// Another pose, from the next frame on. `background`: as the sensor saw it when the pose was found;
   /// nullptr: it is learnt from frames that pass a check.
@@ -63,6 +64,7 @@ class DriftMonitor {
   void note(const DriftReport& report, double now_s);
 
   const std::unique_ptr<DriftWatch> watch_;  // the sensor's thread's own
+  const DriftReport fresh_;                  // of a watch that has seen nothing yet
   std::vector<View> passed_;                 // frames to learn the background from; the thread's own
 
   mutable std::mutex mutex_;  // guards what follows
