@@ -14,7 +14,7 @@ tool=$(command -v clang-format-14 || command -v clang-format) || {
 }
 "$tool" --version | grep -q 'version 14\.' || echo "format: $tool is not version 14; details may differ" >&2
 
-mapfile -t files < <(find core drivers api server config tests cmake -name '*.cpp' -o -name '*.hpp')
+mapfile -t files < <(find core drivers api fleet server config tests cmake -name '*.cpp' -o -name '*.hpp')
 if [ "${1:-}" = --check ]; then
   "$tool" --dry-run --Werror "${files[@]}"
 else

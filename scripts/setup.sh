@@ -9,6 +9,7 @@
 #   scripts/setup.sh --list    print the packages
 #   scripts/setup.sh --fuzz    install what fuzzing needs as well (clang, 300 MB); scripts/fuzz.sh does so
 #   scripts/setup.sh --browser install what scripts/page.sh drives the page with as well (Chromium)
+#   scripts/setup.sh --fleet   install what the fleet's tests run against as well (mosquitto, PostgreSQL)
 #   scripts/setup.sh --load    install what scripts/load.sh throughput compares with as well (wrk, nginx)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -18,11 +19,13 @@ readonly kLibraries=(
   libeigen3-dev libembree-dev libtbb-dev libnanoflann-dev                                # geometry
   liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
+  libmosquitto-dev libpq-dev                                                              # fleet
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev python3-jsonschema libfaketime)                          # tests
 readonly kPage=(nodejs npm) # a Node.js of one's own, 18 or newer, serves as well
 readonly kBrowser=(chromium)  # Ubuntu has it only as a snap
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
+readonly kFleet=(mosquitto mosquitto-clients postgresql)
 readonly kLoad=(wrk nginx-light)
 readonly kBoostPrefix=.deps/boost
 readonly kPclPrefix=.deps/pcl
@@ -137,6 +140,7 @@ main() {
   os=$(distribution)
   case ${1:-} in
     --fuzz) extra=("${kFuzzing[@]}") && shift ;;
+    --fleet) extra=("${kFleet[@]}") && shift ;;
     --load) extra=("${kLoad[@]}") && shift ;;
     --browser) extra=("${kBrowser[@]}") && shift ;;
   esac
@@ -153,7 +157,7 @@ main() {
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
-  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fuzz, --load, --browser"
+  [ $# = 0 ] || die "unknown option '$1'. Options: --check, --list, --fleet, --fuzz, --load, --browser"
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi

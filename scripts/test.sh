@@ -11,7 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${CALIBRD_PRESET:-release}
 log=build/$preset/ctest.log
 
-scripts/setup.sh
+scripts/setup.sh --fleet
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 

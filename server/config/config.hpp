@@ -145,6 +145,21 @@ struct AuditConfig {
   int files = 10;
 };
 
+struct MqttTlsConfig {
+  bool enabled = false;
+  std::filesystem::path ca, certificate, key;
+};
+
+struct MqttConfig {
+  std::string host;  ///< empty: nothing is published
+  int port = 0;
+  std::string cell;
+  std::string prefix = "calibrd";
+  std::string username;
+  std::filesystem::path password_file;
+  MqttTlsConfig tls;
+};
+
 struct LogConfig {
   std::string level = "info";
   std::string format = "text";
@@ -161,6 +176,7 @@ struct Config {
   MotionConfig motion;
   StorageConfig storage;
   AuditConfig audit;
+  MqttConfig mqtt;
   LogConfig log;
 };
 

@@ -54,5 +54,6 @@ void declare_drift(std::vector<Setting>& table);
 void declare_motion(std::vector<Setting>& table);
 void declare_server(std::vector<Setting>& table);
 void declare_audit(std::vector<Setting>& table);
+void declare_mqtt(std::vector<Setting>& table);
 
 }  // namespace calibrd

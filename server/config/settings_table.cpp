@@ -216,6 +216,7 @@ void declare_rest(std::vector<Setting>& table) {
   storage("captures_max_mb", &StorageConfig::captures_max_mb, integer(0, 10'000'000), "MB",
           "All of them take no more; the oldest go first. 0: none are kept.");
   declare_audit(table);
+  declare_mqtt(table);
   SectionDeclarer<LogConfig> log(table, {"log"}, [](Config& c, const Names&) -> LogConfig& { return c.log; });
   log("level", &LogConfig::level, one_of({"trace", "debug", "info", "warn", "error"}), "",
       "Least severe message that is logged (to stderr).")

@@ -12,6 +12,7 @@
 #include "server/daemon/descriptor_limit.hpp"
 #include "server/daemon/event_log.hpp"
 #include "server/daemon/feed_thread.hpp"
+#include "server/daemon/fleet_link.hpp"
 #include "server/daemon/motion_link.hpp"
 #include "server/daemon/robot_link.hpp"
 #include "server/live_cell/live_cell.hpp"
@@ -76,15 +77,6 @@ std::filesystem::path page_folder() {
   return program.parent_path().parent_path() / "share/calibrd/web";
 }
 
-/// As many as were asked for, or as many as the system allows.
-int room_for(int connections) {
-  const int room = make_room_for_connections(connections);
-  if (room < connections)
-    spdlog::warn("server.max_connections: the limit of open files (ulimit -Hn) is enough for {} of {}", room,
-                 connections);
-  return room;
-}
-
 }  // namespace
 
 Status check_config(const Config& config) {
@@ -96,6 +88,7 @@ Status check_config(const Config& config) {
   if (!mapping) return mapping.error();
   if (auto status = check_motion(config, *model, *mapping); !status) return status;
   if (auto status = check(link_settings(config.robot)); !status) return status;
+  if (auto status = check_mqtt(config); !status) return status;
   return check_sensors(config);
 }
 
@@ -111,6 +104,7 @@ struct Daemon::Parts {
   std::unique_ptr<LiveCell> cell;
   std::unique_ptr<RobotLink> link;
   std::unique_ptr<FeedThread> feed;
+  std::unique_ptr<FleetLink> fleet;  // only where a broker is configured
   api::Router router;
   std::unique_ptr<AuditLog> audit;
   std::shared_ptr<api::Authenticator> authenticator;  // only where tokens are asked for
@@ -173,6 +167,7 @@ struct Daemon::Parts {
     const auto on_calibration = [this](const api::CalibrationReport& calibration) {
       operations->note(calibration);
       log_calibration(calibration);
+      if (fleet) fleet->wake();
     };
     return {on_calibration, log_pose, log_error, log_motion, log_calibration_start};
   }
@@ -211,7 +206,7 @@ struct Daemon::Parts {
 
   Status make_http(const Config& config, api::Entrance entrance) {
     auto settings = http_settings(config);
-    settings.max_connections = room_for(settings.max_connections);
+    settings.max_connections = room_for_connections(settings.max_connections);
     settings.entrance = std::move(entrance);
     if (auto status = make_doors(config, settings); !status) return status;
     feed = std::make_unique<FeedThread>(*cell);
@@ -262,6 +257,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, api::Entranc
   if (auto status = parts.open_store(config); !status) return status.error();
   if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
+  if (auto status = FleetLink::make(config, version, *parts.cell, *parts.store, parts.fleet); !status) return status.error();
   if (auto status = parts.make_http(config, std::move(entrance)); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();
   parts.watch_service(manager);
@@ -279,6 +275,7 @@ void Daemon::stop() {
   if (parts_->link) parts_->link->stop();
   parts_->http.reset();
   parts_->feed.reset();
+  parts_->fleet.reset();
   parts_->cell.reset();
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/daemon/descriptor_limit.hpp"
 
+#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -24,6 +25,14 @@ int make_room_for_connections(int connections) {
   }
   if (limit.rlim_cur >= wanted) return connections;
   return limit.rlim_cur > kOthers ? static_cast<int>(limit.rlim_cur - kOthers) : 1;
+}
+
+int room_for_connections(int connections) {
+  const int room = make_room_for_connections(connections);
+  if (room < connections)
+    spdlog::warn("server.max_connections: the limit of open files (ulimit -Hn) is enough for {} of {}", room,
+                 connections);
+  return room;
 }
 
 }  // namespace calibrd

@@ -8,4 +8,7 @@ namespace calibrd {
 /// as the system's hard limit allows. Returns how many connections the limit is enough for.
 int make_room_for_connections(int connections);
 
+/// As many as were asked for, or as many as the system allows, which the log then says.
+int room_for_connections(int connections);
+
 }  // namespace calibrd

@@ -25,6 +25,12 @@ struct KeyedStart {
   std::string fingerprint;
 };
 
+/// A calibration that has ended and that no collector has acknowledged yet.
+struct OutboxEntry {
+  std::int64_t number = 0;  ///< rising
+  api::CalibrationReport calibration;
+};
+
 /// The calibration whose pose a sensor has.
 struct CurrentCalibration {
   api::CalibrationReport calibration;
@@ -81,6 +87,11 @@ class CalibrationStore {
   Result<api::HistoryPage> history(const api::HistoryQuery& query);
   Result<std::optional<KeyedStart>> find_start(const std::string& sensor_id,
                                                const std::string& idempotency_key);
+
+  /// What ended and was not acknowledged, with numbers above `after`, oldest first, with evidence.
+  Result<std::vector<OutboxEntry>> outbox(std::int64_t after, int limit);
+  /// These were acknowledged.
+  Status remove_from_outbox(const std::vector<std::string>& calibration_ids);
 
  private:
   CalibrationStore(std::filesystem::path file, std::string vfs)

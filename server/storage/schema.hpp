@@ -87,9 +87,20 @@ WHEN (SELECT COUNT(*) FROM calibrations old JOIN calibrations newer ON newer.sen
 BEGIN SELECT RAISE(ABORT, 'backgrounds are kept'); END;
 )sql";
 
+/// What ended and was not yet acknowledged by a collector (docs/fleet.md): by a trigger, so that it is in here in the same
+/// stroke as the result is stored. Of the two only this table may lose rows.
+inline constexpr const char* kOutbox = R"sql(
+CREATE TABLE outbox (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  calibration_id TEXT NOT NULL UNIQUE REFERENCES calibrations (id)
+);
+INSERT INTO outbox (calibration_id) SELECT r.calibration_id FROM results r JOIN calibrations c ON c.id = r.calibration_id ORDER BY c.number;
+CREATE TRIGGER results_go_out AFTER INSERT ON results BEGIN INSERT INTO outbox (calibration_id) VALUES (NEW.calibration_id); END;
+)sql";
+
 /// Steps from an empty file to today's schema. The file's user_version is how many it has taken; a change is
 /// one more step, and the steps before it stay as they are.
 inline constexpr std::array kSchemaSteps{kFirstSchema, kPoseBasisAndDrift, kBackgrounds, kEvidence,
-                                         kOldBackgroundsMayGo};
+                                         kOldBackgroundsMayGo, kOutbox};
 
 }  // namespace calibrd

@@ -27,7 +27,7 @@ Status check_structure(Database& database) {
   const auto words = check.next() ? check.text(0) : std::string();
   if (auto status = check.status(StorageError::cannot_read); !status) return status;
   if (words != "ok") return Error{StorageError::damaged, words};
-  for (const char* table : {"calibrations", "results", "activations", "drifts", "backgrounds", "evidence"}) {
+  for (const char* table : {"calibrations", "results", "activations", "drifts", "backgrounds", "evidence", "outbox"}) {
     Statement query(database, std::string("SELECT 1 FROM ") + table + " LIMIT 1");
     query.next();
     if (auto status = query.status(StorageError::damaged); !status) return status;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fails when an include breaks the layering: server -> {api, drivers} -> core.
+"""Fails when an include breaks the layering: server -> fleet -> api -> core, server -> {api, drivers} -> core.
 
 usage: layering.py REPOSITORY
 """
@@ -18,11 +18,16 @@ MAY_INCLUDE = {
     # The simulator is the judge of core: if it shared core's geometry, it would share core's errors.
     "drivers/sim": ("drivers/sim", "core/base"),
     "api": ("api", "core"),
-    "server": ("server", "api", "drivers", "core"),
+    # What leaves the cell: the exporter tells what the API tells; the collector knows topics and PostgreSQL, no cell.
+    "fleet": ("fleet/exporter", "fleet/mqtt", "fleet/messages", "api", "core"),
+    "fleet/messages": ("fleet/messages", "core"),
+    "fleet/mqtt": ("fleet/mqtt", "core"),
+    "fleet/collector": ("fleet/collector", "fleet/mqtt", "fleet/messages", "core"),
+    "server": ("server", "fleet/exporter", "fleet/messages", "api", "drivers", "core"),
     "config": ("config", "core"),
-    "tests": ("tests", "server", "api", "drivers", "core", "config"),
+    "tests": ("tests", "server", "fleet", "api", "drivers", "core", "config"),
 }
-FOLDERS = ("core", "drivers", "api", "server", "config", "tests")
+FOLDERS = ("core", "drivers", "api", "fleet", "server", "config", "tests")
 
 
 class Rule(NamedTuple):
@@ -41,6 +46,8 @@ RULES = (
     Rule(r"(core|api|server)/", r"OpenNI|Driver/Oni", "OpenNI is fenced into drivers"),
     Rule(r"drivers/sim/", r"core/(?!base/)", "the simulator shares nothing but error values with core"),
     Rule(r"api/", r"drivers/", "api knows no driver"),
+    Rule(r"(?!fleet/mqtt/)", r"mosquitto|mqtt_protocol", "libmosquitto is fenced into fleet/mqtt"),
+    Rule(r"(?!fleet/collector/)", r"libpq", "daemons hold no way into a database server: libpq is fenced into fleet/collector"),
 )
 
 FOREIGN = re.compile(r"pcl/|boost/|embree|assimp/|urdf|nanoflann|tbb/|spng|sqlite3")

@@ -31,6 +31,11 @@ GOOD = {
     "drivers/sensor/s.cpp": '#include "drivers/sensor/s.hpp"\n#include <OpenNI.h>\n',
     "drivers/sim/world.cpp": "#include <OpenNI.h>\n#include <boost/asio.hpp>\n",
     "api/r.cpp": '#include "core/a.hpp"\n#include <boost/beast.hpp>\n',
+    "fleet/messages/topics.hpp": "#include <string>\n",
+    "fleet/mqtt/client.cpp": "#include <mosquitto.h>\n",
+    "fleet/exporter/exporter.hpp": '#include "api/r.hpp"\n#include "fleet/messages/topics.hpp"\n',
+    "fleet/collector/warehouse.cpp": '#include <libpq-fe.h>\n#include "fleet/messages/topics.hpp"\n',
+    "server/fleet_link.cpp": '#include "fleet/exporter/exporter.hpp"\n',
     "server/main.cpp": '#include "api/r.hpp"\n#include "drivers/sensor/s.hpp"\n',
     "tests/t.cpp": '#include "drivers/sim/world.hpp"\n#include "core/a.hpp"\n',
 }
@@ -84,6 +89,16 @@ class Layering(unittest.TestCase):
     def test_pcl_stays_in_the_shared_object_of_its_own(self):
         for file in ("api/b.cpp", "core/b.cpp", "core/paper/b.cpp", "tests/core/b.cpp"):
             self.expect_broken("PCL is fenced", {file: "#include <pcl/point_cloud.h>\n"})
+
+    def test_daemons_know_no_database_server(self):
+        for file in ("server/b.cpp", "fleet/exporter/b.cpp", "core/b.cpp"):
+            self.expect_broken("libpq is fenced", {file: "#include <libpq-fe.h>\n"})
+        self.expect_broken("server may include", {"server/b.cpp": '#include "fleet/collector/warehouse.hpp"\n'})
+        self.expect_broken("libmosquitto is fenced", {"server/b.cpp": "#include <mosquitto.h>\n"})
+
+    def test_the_collector_knows_no_cell(self):
+        self.expect_broken("fleet/collector may include", {"fleet/collector/b.cpp": '#include "api/r.hpp"\n'})
+        self.expect_broken("fleet/collector may include", {"fleet/collector/b.cpp": '#include "fleet/exporter/exporter.hpp"\n'})
 
     def test_the_simulator_shares_nothing_with_core(self):
         self.expect_broken("drivers/sim may include", {"drivers/sim/b.cpp": '#include "core/a.hpp"\n'})

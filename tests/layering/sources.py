@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Iterator, NamedTuple
 
-FOLDERS = ("core", "drivers", "api", "server", "web", "config", "tests", "cmake", "scripts", "docker", ".ci")
+FOLDERS = ("core", "drivers", "api", "server", "web", "config", "tests", "cmake", "scripts", "docker", "packaging", "fleet", ".ci")
 CPP = {".cpp", ".hpp", ".h"}
 SOURCES = CPP | {".py", ".sh", ".ts", ".mjs", ".css"}
 MAX_FILE_LINES = 300

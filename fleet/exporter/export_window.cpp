@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The calibrd authors
+// SPDX-License-Identifier: Apache-2.0
+#include "fleet/exporter/export_window.hpp"
+
+namespace calibrd::fleet {
+namespace {
+
+constexpr std::chrono::seconds kFirstPause{15}, kLastPause{300};
+
+}  // namespace
+
+void ExportWindow::add(std::int64_t number, std::string id, std::string payload) {
+  newest_ = std::max(newest_, number);
+  waiting_.try_emplace(std::move(id), Row{std::move(payload), number});
+}
+
+std::vector<std::string> ExportWindow::take_due(Time now) {
+  std::vector<std::string> due;
+  for (auto& [id, row] : waiting_) {
+    if (row.due > now) continue;
+    due.push_back(row.payload);
+    row.pause = row.pause.count() == 0 ? kFirstPause : std::min(2 * row.pause, kLastPause);
+    row.due = now + row.pause;
+  }
+  return due;
+}
+
+void ExportWindow::send_all_again() {
+  for (auto& [id, row] : waiting_) row.pause = std::chrono::seconds(0), row.due = Time{};
+}
+
+bool ExportWindow::drop(const std::string& id) { return waiting_.erase(id) > 0; }
+
+}  // namespace calibrd::fleet

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""The way of calibrations to PostgreSQL, through a real broker, while each part of it is killed; and what a daemon tells a broker."""
+
+import contextlib
+import json
+import sqlite3
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "e2e"))
+from cell import BIN, BUILD, SENSOR, SOURCE, CellTest, free_port, wait_until  # noqa: E402
+from certificates import Authority  # noqa: E402
+from engines import Collector, Mosquitto, Postgres, are_installed  # noqa: E402
+
+EXPORTERS = BUILD / "tests/fleet_exporters"
+
+
+def stored_by_cells(folder: Path) -> set[tuple[str, str]]:
+    """What the daemons' own databases hold: the truth."""
+    found = set()
+    for file in folder.glob("cell-*/calibrd.db"):
+        with contextlib.closing(sqlite3.connect(file)) as database:
+            found |= {(file.parent.name, row[0]) for row in database.execute("SELECT calibration_id FROM results")}
+    return found
+
+
+@unittest.skipUnless(are_installed(), "mosquitto or PostgreSQL is missing; scripts/setup.sh --fleet brings both")
+class Fleet(CellTest):
+    def setUp(self):
+        super().setUp()
+        self.engines = []
+        self.addCleanup(self.end_engines)
+
+    def end_engines(self):
+        for engine in reversed(self.engines):
+            if engine.process.poll() is None:
+                engine.kill()
+            print(f"--- end of the log of {type(engine).__name__}\n{engine.output()[-2000:]}")
+
+    def start(self, engine):
+        self.engines.append(engine)
+        return engine
+
+    def start_three(self, *broker_lines, collector_options=()):
+        broker = self.start(Mosquitto(self.folder, free_port(), *broker_lines))
+        postgres = self.start(Postgres(self.folder))
+        collector = self.start(Collector(self.folder, BIN / "calibrd-collector", broker, postgres, *collector_options))
+        return broker, postgres, collector
+
+    def exporters(self, broker: Mosquitto, cells: int, per_second: float, seconds: float, drain_s: float) -> subprocess.Popen:
+        words = [EXPORTERS, self.folder, cells, broker.port, per_second, seconds, drain_s]
+        return subprocess.Popen([*map(str, words)], stdout=subprocess.PIPE, text=True)
+
+    def rows(self, postgres: Postgres) -> list[tuple[str, str]]:
+        return [tuple(row) for row in postgres.ask("SELECT cell, calibration_id FROM calibrations") or []]
+
+    def test_nothing_is_lost_and_nothing_is_there_twice_whatever_is_killed(self):
+        broker, postgres, collector = self.start_three()
+        work = self.exporters(broker, 10, 30, 60, 0)
+        for engine, pause_s in ((broker, 1), (postgres, 2), (collector, 1), (broker, 0), (postgres, 0)):
+            time.sleep(1.5)
+            engine.kill()
+            time.sleep(pause_s)
+            engine.start()
+        time.sleep(1)
+        work.kill()  # all daemons, too, with whatever they had not sent
+        work.communicate()
+        last = self.exporters(broker, 10, 30, 1, 60)
+        report = json.loads(last.communicate(timeout=120)[0])
+        truth, rows = stored_by_cells(self.folder), self.rows(postgres)
+        self.assertTrue(report["drained"], report)
+        self.assertGreater(len(truth), 100)
+        self.assertEqual((len(rows), set(rows)), (len(truth), truth))
+        self.check_documented_queries(postgres)
+        print(f"{len(rows)} rows of {len(truth)} calibrations; {report}")
+
+    def check_documented_queries(self, postgres: Postgres):
+        block = (SOURCE / "docs/fleet.md").read_text().split("```sql")[1].split("```")[0]
+        queries = [query for query in block.split(";") if query.strip()]
+        self.assertEqual(len(queries), 4)
+        for query in queries:
+            self.assertIsNotNone(postgres.ask(query), query + postgres.output()[-1000:])
+
+    def test_a_document_that_cannot_be_stored_holds_up_no_other(self):
+        broker, postgres, collector = self.start_three()
+        topic = "calibrd/v1/cells/odd/calibrations"
+        good = {"id": "good", "sensor": "s", "created_at": "2026-01-01T00:00:00Z", "status": "failed", "method": "full"}
+        wait_until("the collector listens", lambda: "connected" in collector.output())
+        answers = subprocess.Popen(["mosquitto_sub", "-V", "5", "-p", str(broker.port), "-t", "calibrd/v1/cells/odd/acknowledgements", "-W", "20", "-C", "2"],
+                                   stdout=subprocess.PIPE, text=True)
+        time.sleep(1)
+        for document in ({**good, "id": "bad", "created_at": "yesterday-ish"}, "no json", good):
+            text = document if isinstance(document, str) else json.dumps(document)
+            subprocess.run(["mosquitto_pub", "-V", "5", "-q", "1", "-p", str(broker.port), "-t", topic, "-m", text], check=True, timeout=20)
+        wait_until("the good one is stored", lambda: ("odd", "good") in self.rows(postgres))
+        heard = "".join(answers.communicate(timeout=40)[0])
+        self.assertIn('"calibration":"bad"', heard)
+        self.assertIn('"stored":["good"]', heard)
+
+    def test_a_daemon_tells_pose_state_and_its_own_end_through_tls(self):
+        authority = Authority(self.folder, "root")
+        certificate, key = authority.issue("broker")
+        tls = (f"cafile {authority.certificate}", f"certfile {certificate}", f"keyfile {key}")
+        broker, postgres, _ = self.start_three(*tls, collector_options=("--tls", "--ca", authority.certificate, "--broker", "localhost"))
+        with_tls = ("--cafile", str(authority.certificate), "-h", "localhost")
+        simulator = self.simulate()
+        simulator.hurry()
+        daemon = self.serve(simulator, "mqtt.host=localhost", f"mqtt.port={broker.port}", "mqtt.cell=cell7", "mqtt.tls.enabled=true",
+                            f"mqtt.tls.ca={authority.certificate}").wait_ready()
+        result = daemon.calibrate(postures=3)
+        base = "calibrd/v1/cells/cell7"
+        pose = wait_until("a valid pose is told", lambda: (told if (told := json.loads(broker.hear(f"{base}/sensors/{SENSOR}/pose", *with_tls)))["valid"] else None))
+        self.assertEqual(pose["T_base_sensor"], daemon.pose()["T_base_sensor"])
+        self.assertIn("valid_until", pose)
+        self.assertEqual(json.loads(broker.hear(f"{base}/sensors/{SENSOR}/state", *with_tls))["health"], "streaming")
+        self.assertTrue(json.loads(broker.hear(f"{base}/status", *with_tls))["online"])
+        row = wait_until("the calibration is in PostgreSQL", lambda: postgres.ask(
+            "SELECT calibration_id, verdict, t_base_sensor FROM newest_poses JOIN calibrations USING (cell, sensor_id, calibration_id)"))
+        self.assertEqual(row[0][:2], [result["id"], "accepted"])
+        self.assertEqual(json.loads(row[0][2]), result["result"]["T_base_sensor"])
+        daemon.process.kill()
+        wait_until("the last will", lambda: not json.loads(broker.hear(f"{base}/status", *with_tls))["online"])
+
+
+if __name__ == "__main__":
+    unittest.main()
