@@ -15,6 +15,9 @@ namespace {
 namespace json = boost::json;
 
 constexpr double kLeastPeak = 0.1;  // smaller ones say nothing of the tail
+/// Of the tolerance. With less of it the statistic is nowhere smaller, so that its alarms bound those of the
+/// test, also where the test itself shows no peak to judge by.
+constexpr double kShares[] = {1, 0.8, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
 
 struct Block {
   std::size_t begin = 0, end = 0;
@@ -56,17 +59,29 @@ void feed(ShiftTest& test, const RecordedInnovation& one) {
   test.add(one.innovation.supported_shift, one.innovation.supported_covariance, one.innovation.common_share);
 }
 
-json::object measured(const std::vector<RecordedInnovation>& all, const Block& block) {
-  ShiftTest test{ShiftTestSettings{}};
+ShiftTestSettings with_tolerance(double share) {
+  ShiftTestSettings settings;
+  settings.tolerance_m *= share;
+  settings.tolerance_rad *= share;
+  return settings;
+}
+
+json::array peaks_of(const std::vector<RecordedInnovation>& all, const Block& block, double share) {
+  ShiftTest test(with_tolerance(share));
   Peaks peaks;
   for (std::size_t i = block.begin; i < block.end; ++i) {
     feed(test, all[i]);
     peaks.add(test.statistic());
   }
   peaks.end();
-  return {{"cell", all[block.begin].cell},
-          {"frames", block.end - block.begin},
-          {"peaks", json::value_from(peaks.found())}};
+  return json::value_from(peaks.found()).as_array();
+}
+
+json::object measured(const std::vector<RecordedInnovation>& all, const Block& block) {
+  json::array peaks;
+  for (const double share : kShares)
+    peaks.push_back({{"tolerance_share", share}, {"peaks", peaks_of(all, block, share)}});
+  return {{"cell", all[block.begin].cell}, {"frames", block.end - block.begin}, {"tails", peaks}};
 }
 
 json::object resampled(const std::vector<RecordedInnovation>& all, const std::vector<Block>& blocks,
