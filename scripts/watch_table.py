@@ -98,6 +98,10 @@ def show_hours(lines):
     for line in lines:
         shown.update(line["seconds"])
     print("  shown: " + ", ".join(f"{name} {seconds:.0f} s" for name, seconds in shown.most_common()))
+    unseen_s = sum(line["unseen_s"] for line in lines)
+    print(f"  the pose could not be called good, for nothing showed that the sensor stands: {unseen_s:.1f} s")
+    print(f"  the robot's word against the pose, of its limit, at most: {max(line['robot_doubt'] for line in lines):.2f} in postures "
+          f"one by one, {max(line['creep_doubt'] for line in lines):.2f} in their mean; comparisons: {sum(line['checks'] for line in lines)}")
     print(times(lines))
     return not any(line["false_alarms"] for line in lines)
 

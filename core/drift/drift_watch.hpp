@@ -73,6 +73,7 @@ class DriftWatch {
 
   const BackgroundMap& background() const { return map_; }
   const BackgroundMatcher& matcher() const { return matcher_; }
+  const RobotWord& robot_word() const { return robot_word_; }
   /// Innovation of the last frame about the middle of the background, for whoever studies the test.
   struct Innovation {
     Vector6d turn_shift;

@@ -11,10 +11,8 @@ namespace {
 constexpr double kOff_s = 0.5;  // one comparison alone says nothing of a second
 /// A comparison of a good model stays below 2.2 standard deviations of what noise, model and joint zeros
 /// explain, in nearly every posture.
-constexpr double kAllowance = 2.7, kPostureWeight = 2, kLimit = 5.5;
+constexpr double kAllowance = 2.7, kPostureWeight = 2;
 constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
-/// Of the postures together (docs/figures.md has what it finds).
-constexpr double kCreepSigmas = 4;
 /// What comparisons in one motion, in which its frames and joints may lag, have against a pose is one word.
 constexpr double kLeastDoubt_s = 1;
 constexpr std::size_t kMostDoubts = 6;
@@ -62,6 +60,11 @@ bool RobotWord::is_off(double now_s) const { return newest_ && !newest_->agrees 
 std::optional<RobotShift> RobotWord::creep() const {
   const auto shift = mean_.shift();
   return shift && shift->sigmas > kCreepSigmas ? shift : std::nullopt;
+}
+
+double RobotWord::creep_doubt() const {
+  const auto shift = mean_.shift();
+  return shift ? shift->sigmas / kCreepSigmas : 0;
 }
 
 std::vector<PoseCheck> RobotWord::doubts() const {

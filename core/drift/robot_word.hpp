@@ -30,6 +30,10 @@ class RobotWord {
   /// The newest one disagrees, and is of this very moment.
   bool is_off(double now_s) const;
 
+  /// What speaks against the pose, of kLimit: 1 = it is too much ...
+  double doubt() const { return statistic_ / kLimit; }
+  /// ... and what the last postures together show, of kCreepSigmas.
+  double creep_doubt() const;
   bool has_doubt() const { return statistic_ > 0; }
   /// Postures on end have spoken against pose and model, for a second or more ...
   bool is_against() const;
@@ -43,6 +47,9 @@ class RobotWord {
   std::optional<RobotShift> creep() const;
 
   static constexpr double kOfNow_s = 2;  ///< a comparison is of now for so long
+  static constexpr double kLimit = 5.5;
+  /// Of the postures together (docs/figures.md has what it finds).
+  static constexpr double kCreepSigmas = 4;
 
  private:
   std::optional<PoseCheck> newest_;

@@ -77,6 +77,8 @@ class WorkingCell {
 struct Shown {
   std::map<std::string, double> seconds;  // by verdict
   double largest = 0, worst_check = 0, moved_s = 0;
+  double robot_doubt = 0, creep_doubt = 0;  // of their limits
+  double unseen_s = 0;                      // the pose could not be called good
   std::size_t frames = 0, alarms = 0, evidence = 0;
 
   json::object described(const WatchedSensor& sensor) const {
@@ -90,6 +92,9 @@ struct Shown {
             {"threshold", sensor.watch().report().threshold},
             {"checks", sensor.checks()},
             {"worst_check_sigmas", worst_check},
+            {"unseen_s", unseen_s},
+            {"robot_doubt", robot_doubt},
+            {"creep_doubt", creep_doubt},
             {"ms_median", quantile(sensor.frame_ms(), 0.5)},
             {"ms_99", quantile(sensor.frame_ms(), 0.99)},
             {"ms_most", quantile(sensor.frame_ms(), 1)},
@@ -112,6 +117,10 @@ json::object watch_cell(const CalibratedScenes::One& one,
     shown.seconds[name_of(verdict)] += 1 / RunningCell::kRate_hz;
     shown.largest = std::max(shown.largest, sensor.watch().report().statistic);
     shown.worst_check = std::max(shown.worst_check, sensor.last_check().shift_sigmas);
+    if (sensor.watch().is_out_of_sight() || sensor.watch().is_contested())
+      shown.unseen_s += 1 / RunningCell::kRate_hz;
+    shown.robot_doubt = std::max(shown.robot_doubt, sensor.watch().robot_word().doubt());
+    shown.creep_doubt = std::max(shown.creep_doubt, sensor.watch().robot_word().creep_doubt());
     if (const auto& innovation = sensor.watch().innovation()) {
       innovations.write(static_cast<std::uint32_t>(seed), frame.view.stamp_s, *innovation);
       ++shown.evidence;

@@ -147,6 +147,32 @@ TEST_F(BeforeAWall, WhatIsAnotherMoveInEachPostureIsTheModel) {
   EXPECT_EQ(watch_for(0.1), DriftVerdict::robot_model_wrong);
 }
 
+TEST_F(BeforeAWall, WhatMayBeTheModelOrTheSensorIsContestedUntilPosturesAgree) {
+  watch_for(1);
+  check(Vector6d::Zero());
+  for (int posture = 0; posture < 3; ++posture) {
+    watch_for(1);
+    check(along_the_wall(posture % 2 == 0 ? 0.012 : -0.012));
+  }
+  ASSERT_EQ(watch_for(0.1), DriftVerdict::robot_model_wrong);
+  EXPECT_TRUE(watch_.is_contested());
+  for (int posture = 0; posture < 4; ++posture) {
+    watch_for(1);
+    check(Vector6d::Zero());
+  }
+  EXPECT_FALSE(watch_.is_contested());
+}
+
+TEST_F(RobotsWord, WhatTheBackgroundShowsToBeTheModelIsNotContested) {
+  watch_for(2);
+  for (int posture = 0; posture < 4; ++posture) {
+    watch_for(1);
+    check(shifted(0.012, 0, 0));
+  }
+  ASSERT_EQ(watch_for(0.1), DriftVerdict::robot_model_wrong);
+  EXPECT_FALSE(watch_.is_contested());
+}
+
 TEST_F(BeforeAWall, WhatNoPostureTellsManyTellTogether) {
   moved_ = along_the_wall(0.0022);
   for (int posture = 0; posture < 4; ++posture) {
