@@ -32,6 +32,7 @@ std::vector<RobotShift> shifts_of(const std::vector<PoseCheck>& checks) {
 
 void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joints_rad, double now_s) {
   robot_word_.add(check, joints_rad, now_s);
+  if (dispute_.is_open() && check.agrees && preference_of(check, dispute_.turn_shift()) > 0) dispute_.deny();
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
   if (model_wrong_ || moved_) return;
   if (robot_word_.is_against()) {
@@ -72,12 +73,16 @@ double DriftWatch::robots_preference(double now_s) const {
       std::max(std::min(RobotWord::kOfNow_s, run_s), std::min(kAnswer_s, now_s - rises_since_s_));
   if (!robot_word_.has_spoken_within(since_s, now_s)) return 0;
   const PoseCheck& check = *robot_word_.newest();
-  const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_ * map_.middle_sensor());
-  const Vector6d moved = move * test_.mean(), seen = check.turn_shift;
-  const Eigen::LDLT<Matrix6d> solver(check.turn_shift_covariance);
-  const Vector6d off = seen - moved;
-  const double preference = off.dot(solver.solve(off)) - seen.dot(solver.solve(seen));
+  const double preference = preference_of(check, test_.mean());
   return check.agrees ? preference : std::min(preference, 0.0);
+}
+
+/// `turn_shift`: of the middle of the background.
+double DriftWatch::preference_of(const PoseCheck& check, const Vector6d& turn_shift) const {
+  const Matrix6d move = shift_of_point(check.middle_base - T_base_sensor_ * map_.middle_sensor());
+  const Eigen::LDLT<Matrix6d> solver(check.turn_shift_covariance);
+  const Vector6d seen = check.turn_shift, off = seen - move * turn_shift;
+  return off.dot(solver.solve(off)) - seen.dot(solver.solve(seen));
 }
 
 /// The robot is not where it should be, and nothing else in view says that this is not the sensor's doing.

@@ -273,7 +273,7 @@ bool DriftWatch::is_seen() const {
 }
 
 bool DriftWatch::is_out_of_sight() const {
-  const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_);
+  const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_) && !dispute_.is_denied();
   const double patience_s = is_dark() ? kDark_s : kOutOfSight_s;
   const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > patience_s;
   return has_background() && (is_disputed || is_nowhere) &&

@@ -106,6 +106,7 @@ class DriftWatch {
   void judge(double now_s);
   void on_denial();
   double robots_preference(double now_s) const;
+  double preference_of(const PoseCheck& check, const Vector6d& turn_shift) const;
   bool is_robots_shift_possible(std::span<const RobotShift> postures) const;
   bool is_one_move(std::span<const RobotShift> postures) const;
   bool has_crept() const;

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+
 #include "core/drift/background_match.hpp"
 #include "core/geometry/pose.hpp"
 
@@ -15,6 +17,9 @@ class ShiftDispute {
   void add(const CellWindow& window, const Vector6d& turn_shift, double now_s);
   /// A frame does not. A few of these end nothing.
   void add_none(double now_s);
+  /// The robot says that it is not the sensor's: holds while it stays what it is.
+  void deny() { denied_ = turn_shift_; }
+  bool is_denied() const;
   /// It is known what it was.
   void settle() { since_s_ = -1; }
 
@@ -28,6 +33,7 @@ class ShiftDispute {
   double since_s_ = -1, seen_s_ = -1e9;
   CellWindow window_;
   Vector6d turn_shift_ = Vector6d::Zero();
+  std::optional<Vector6d> denied_;
 };
 
 }  // namespace calibrd

@@ -118,6 +118,11 @@ TEST_F(PushedBox, ASlideThatOneThingAloneShowsIsNoEvidenceThatTheSensorStands) {
   check(Vector6d::Zero());
   watch_for(0.2);
   EXPECT_FALSE(watch_.is_out_of_sight()) << "the robot says that it is the box";
+  watch_for(5);
+  EXPECT_FALSE(watch_.is_out_of_sight()) << "it has said so, and nothing has changed since";
+  moved_.tail<3>() = 0.008 * true_T_base_sensor().linear().col(0);
+  watch_for(3);
+  EXPECT_TRUE(watch_.is_out_of_sight());
 }
 
 TEST_F(PushedBox, ASlideThatTheRobotShowsTooIsNeverInPlace) {
