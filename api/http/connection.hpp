@@ -32,6 +32,12 @@ class Connection {
   void expires_after(std::chrono::nanoseconds time) { tcp_.expires_after(time); }
   void expires_never() { tcp_.expires_never(); }
   void close() { tcp_.close(); }
+  /// Whether a close drops what the client has not taken and resets the connection. Otherwise the kernel
+  /// keeps it for minutes after, for a client that may never read, and no limit here counts it.
+  void drop_unsent_at_close(bool drop) {
+    boost::system::error_code ignored;
+    tcp_.socket().set_option(boost::asio::socket_base::linger(drop, 0), ignored);
+  }
   bool has_tls() const { return tls_.has_value(); }
 
   /// Only with TLS.

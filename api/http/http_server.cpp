@@ -39,6 +39,8 @@ constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 /// takes megabytes for each of them, and the network thread spends its time on copying them.
 constexpr int kMostUnsent = 128 * 1024;
 using NotSentLowWater = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+/// How long the kernel waits for a client to take any of what it still has, after a close as well (ms).
+using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
 
 }  // namespace
 
@@ -72,9 +74,7 @@ class HttpServer::Impl {
     tls_ = std::move(entrance.tls);
     ErrorCode failure;
     acceptor_.assign(entrance.address->is_v6() ? tcp::v6() : tcp::v4(), entrance.address->release(), failure);
-    ErrorCode ignored;                                   // connections are served without, only not as well
-    acceptor_.set_option(tcp::no_delay(true), ignored);  // connections inherit them
-    acceptor_.set_option(NotSentLowWater(kMostUnsent), ignored);
+    set_options_of_connections();
     if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
     if (failure)
       return Error{HttpServerError::cannot_listen, settings_.address + " (" + failure.message() + ")"};
@@ -120,6 +120,14 @@ class HttpServer::Impl {
   std::uint16_t port() const { return port_; }
 
  private:
+  /// They inherit them. They are served without, only not as well: failures are no matter.
+  void set_options_of_connections() {
+    ErrorCode ignored;
+    acceptor_.set_option(tcp::no_delay(true), ignored);
+    acceptor_.set_option(NotSentLowWater(kMostUnsent), ignored);
+    acceptor_.set_option(UserTimeout(static_cast<int>(settings_.write_timeout.count())), ignored);
+  }
+
   asio::awaitable<void> accept_connections() {
     for (;;) {
       ErrorCode failure;

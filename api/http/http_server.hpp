@@ -34,7 +34,7 @@ struct HttpServerSettings {
   std::chrono::milliseconds header_timeout{10'000};  ///< from the first byte to the end of the header
   std::chrono::milliseconds body_timeout{10'000};
   std::chrono::milliseconds write_timeout{60'000};   ///< for a whole answer
-  std::chrono::milliseconds stall_timeout{10'000};   ///< without a byte of an answer being taken
+  std::chrono::milliseconds stall_timeout{10'000};   ///< for each 64 KiB of it, about
   std::size_t most_unread = std::size_t{128} << 20;  ///< bytes of answers that clients have not taken yet
   std::uint32_t header_limit = 8 * 1024;
   std::uint64_t body_limit = 64 * 1024;

@@ -108,7 +108,12 @@ asio::awaitable<bool> Session::send(std::string_view header, std::string_view bo
     if (failure && failure != asio::error::would_block) co_return false;
   }
   if (sent == header.size() + body.size()) co_return true;
+  stream_.drop_unsent_at_close(true);
   const bool is_sent = co_await send_rest(header, body, sent);
+  if (is_sent)
+    stream_.drop_unsent_at_close(false);
+  else
+    close();  // here, because a socket's destructor would leave what is unsent to the kernel
   co_return is_sent;
 }
 

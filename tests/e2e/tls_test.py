@@ -66,6 +66,24 @@ class TlsTest(CellTest):
         self.assertIn(b"alive", curl.stdout)
         self.assertLess(daemon.stop(), 3)
 
+    def test_a_large_answer_comes_whole_to_a_client_that_takes_it_bit_by_bit_and_the_connection_goes_on(self):
+        daemon = self.start(*self.tls)
+        plain = socket.socket()
+        plain.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)  # the daemon has to wait for it
+        plain.settimeout(15)
+        plain.connect(("127.0.0.1", daemon.port))
+        with contextlib.closing(self.trusting().wrap_socket(plain, server_hostname="127.0.0.1")) as secure:
+            for _ in range(2):
+                secure.sendall(b"GET /openapi.json HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+                answer = http.client.HTTPResponse(secure)
+                answer.begin()
+                body = b""
+                while part := answer.read(16384):
+                    body += part
+                    time.sleep(0.01)
+                self.assertEqual(body, self.ask(daemon, path="/openapi.json").body)
+                self.assertGreater(len(body), 100_000)
+
     def test_old_protocols_are_refused(self):
         daemon = self.start(*self.tls)
         for version, works in ((ssl.TLSVersion.TLSv1, False), (ssl.TLSVersion.TLSv1_1, False), (ssl.TLSVersion.TLSv1_2, True),

@@ -9,6 +9,7 @@ usage: slow.py [SECONDS [SENDERS [READERS]]]     default: 60 s, 2000 that send a
 import contextlib
 import json
 import os
+import resource
 import subprocess
 import sys
 import threading
@@ -49,27 +50,34 @@ class Held:
         return self.last
 
 
+def tcp_memory_kib() -> int:
+    """Of the whole machine: also of connections that no process has any more, which are nobody's memory otherwise."""
+    words = next(line for line in Path("/proc/net/sockstat").read_text().splitlines() if line.startswith("TCP:")).split()
+    return int(words[words.index("mem") + 1]) * resource.getpagesize() // 1024
+
+
 class Highest:
-    """The most memory (KiB) that a process has while this runs."""
+    """The most memory (KiB) that a process and the kernel for its connections have while this runs."""
 
     def __init__(self, pid: int):
-        self.pid, self.most, self.ending = pid, 0, threading.Event()
+        self.pid, self.most, self.most_of_kernel, self.ending = pid, 0, 0, threading.Event()
         self.thread = threading.Thread(target=self.look, daemon=True)
         self.thread.start()
 
     def look(self) -> None:
         while not self.ending.wait(0.1):
             self.most = max(self.most, Holdings.of(self.pid).memory_kib)
+            self.most_of_kernel = max(self.most_of_kernel, tcp_memory_kib())
 
-    def end(self) -> int:
+    def end(self) -> "Highest":
         self.ending.set()
         self.thread.join()
-        return self.most
+        return self
 
 
 def measure(daemon, seconds: float, senders: int, readers: int) -> dict:
     """Memory and latency beside the slow ones; then, that they leave nothing behind."""
-    before = Holdings.of(daemon.process.pid)
+    before, kernel_before = Holdings.of(daemon.process.pid), tcp_memory_kib()
     alone = open_loop.result(open_loop.start(daemon.port, POSE, ASKED_PER_S, POLLERS, min(10.0, seconds)))
     load = open_loop.start(daemon.port, POSE, ASKED_PER_S, POLLERS, seconds)  # they are there first, and stay
     highest = Highest(daemon.process.pid)
@@ -86,7 +94,9 @@ def measure(daemon, seconds: float, senders: int, readers: int) -> dict:
     return {"senders": sent, "readers": unread, "alone_p99_ms": alone["p99_ms"], "p99_ms": beside["p99_ms"],
             "p999_ms": beside["p999_ms"], "most_ms": beside["most_ms"], "statuses": beside["statuses"],
             "unanswered": beside["unanswered"], "failed_connections": beside["failed_connections"],
-            "memory_before_mib": round(before.memory_kib / 1024), "memory_most_mib": round(most / 1024),
+            "memory_before_mib": round(before.memory_kib / 1024), "memory_most_mib": round(most.most / 1024),
+            "kernel_before_mib": round(kernel_before / 1024), "kernel_most_mib": round(most.most_of_kernel / 1024),
+            "kernel_after_mib": round(tcp_memory_kib() / 1024),
             "descriptors_closed_after_s": round(time.monotonic() - begin, 2), "load_average": round(os.getloadavg()[0], 1)}
 
 
@@ -98,7 +108,8 @@ def main(seconds: float = 60, senders: float = 2000, readers: float = 500) -> No
           [["alone", line["alone_p99_ms"], ""], [f"beside {int(senders)} slow senders and {int(readers)} readers", line["p99_ms"],
                                                  line["most_ms"]]])
     print(f"longest that a sender was left: {line['senders']['longest_s']} s; memory {line['memory_before_mib']} MiB before, "
-          f"{line['memory_most_mib']} MiB at most; {machine()}")
+          f"{line['memory_most_mib']} MiB at most; the kernel for all "
+          f"connections {line['kernel_before_mib']}, {line['kernel_most_mib']} MiB; {machine()}")
 
 
 if __name__ == "__main__":

@@ -50,6 +50,13 @@ class Client {
     asio::read(socket_, asio::dynamic_buffer(text), end);
     return text;
   }
+  /// The next bytes, or fewer where the connection ends.
+  std::string receive_some(std::size_t bytes) {
+    std::string text(bytes, '\0');
+    boost::system::error_code end;
+    text.resize(asio::read(socket_, asio::buffer(text), end));
+    return text;
+  }
   bool is_closed() {
     char byte = 0;
     boost::system::error_code failure;

@@ -62,6 +62,16 @@ TEST_F(HttpServerTest, ALineBreakInAHeadersValueBeginsNoOther) {
   EXPECT_EQ(answer.count("Set-Cookie"), 0U);
 }
 
+TEST_F(HttpServerTest, AnAnswerWithoutABodyHasNoLengthAndTheConnectionGoesOn) {
+  router_.add("GET", "/none", Scope::read, Cost::quick, [](const Request&, const PathValues&) {
+    return Response{204, {}, "forgotten"};
+  });
+  start();
+  Client client(server_->port());
+  EXPECT_EQ(client.get("/none").count(http::field::content_length), 0U);
+  EXPECT_EQ(client.get("/livez").result_int(), 200U);
+}
+
 TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   start();
   Client client(server_->port());
