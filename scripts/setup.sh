@@ -23,6 +23,7 @@ readonly kLibraries=(
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
   libgtest-dev liborocos-kdl-dev python3-jsonschema libfaketime)                          # tests
 readonly kPage=(nodejs npm) # a Node.js of one's own, 18 or newer, serves as well
+readonly kNpm=(web tests/deploy)
 readonly kBrowser=(chromium)  # Ubuntu has it only as a snap
 readonly kFuzzing=(clang libclang-rt-dev) # libFuzzer is in the runtime of the default version
 readonly kFleet=(mosquitto mosquitto-clients postgresql)
@@ -53,15 +54,15 @@ packages() {
 
 has_node() { [ "$(node --version 2>/dev/null | sed 's/v\([0-9]*\).*/\1/')" -ge 18 ] 2>/dev/null && command -v npm >/dev/null; }
 
-# The page's packages, exactly those of the lock file; without running anything of theirs. npm writes down what it has
-# installed: as long as that is newer than the lock file, nothing is to be done.
-need_page_packages() { [ web/package-lock.json -nt web/node_modules/.package-lock.json ]; }
+# Folders with packages of npm, exactly those of their lock files; without running anything of theirs. npm writes down what
+# it has installed: as long as that is newer than the lock file, nothing is to be done.
+need_npm_packages() { [ "$1/package-lock.json" -nt "$1/node_modules/.package-lock.json" ]; }
 
-install_page_packages() {
-  say "installing the page's packages into web/node_modules"
+# install_npm_packages FOLDER CONSEQUENCE
+install_npm_packages() {
+  say "installing packages into $1/node_modules"
   # Not npm ci: it refuses a lock file without rollup's builds for other platforms, which not every registry holds.
-  (cd web && npm install --no-save --ignore-scripts --no-audit --no-fund --loglevel=error >&2) ||
-    say "npm could not: the daemon is built without its page"
+  (cd "$1" && npm install --no-save --ignore-scripts --no-audit --no-fund --loglevel=error >&2) || say "npm could not: $2"
 }
 
 missing_packages() {
@@ -136,7 +137,7 @@ refuse() {
 }
 
 main() {
-  local os missing extra=()
+  local os missing folder extra=()
   os=$(distribution)
   case ${1:-} in
     --fuzz) extra=("${kFuzzing[@]}") && shift ;;
@@ -153,7 +154,9 @@ main() {
   if [ "${1:-}" = --check ]; then
     if need_private_boost "$os"; then missing+=("$kBoostPrefix"); fi
     if need_private_pcl; then missing+=("$kPclPrefix"); fi
-    if need_page_packages; then missing+=(web/node_modules); fi
+    for folder in "${kNpm[@]}"; do
+      if need_npm_packages "$folder"; then missing+=("$folder/node_modules"); fi
+    done
     [ ${#missing[@]} = 0 ] || die "missing: ${missing[*]}"
     return
   fi
@@ -161,7 +164,8 @@ main() {
   [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
   if need_private_boost "$os"; then unpack $kBoostPrefix libboost1.81-dev; fi
   if need_private_pcl; then unpack $kPclPrefix libpcl-dev libflann-dev; fi
-  if need_page_packages; then install_page_packages; fi
+  if need_npm_packages web; then install_npm_packages web "the daemon is built without its page"; fi
+  if need_npm_packages tests/deploy; then install_npm_packages tests/deploy "the manifests are not tested"; fi
 }
 
 main "$@"

@@ -6,6 +6,7 @@
 #   release   tests marked CONFIGURATIONS Deep (long tables, long runs)
 #   asan      every test under the address and undefined-behaviour sanitizers
 #   tsan      every test under the thread sanitizer
+#   image     docker/Dockerfile, built and run with buildah (as root, when it is installed)
 #   format    clang-format, in check mode     (when it is installed)
 #   tidy      clang-tidy over every source    (when it is installed)
 # usage: scripts/test_deep.sh [STEP...]   default: all of them; a failing step does not stop the next one
@@ -30,6 +31,11 @@ step_tsan() {
     "${fixed[@]}" ctest --preset tsan --parallel "$(nproc)"
 }
 
+step_image() {
+  command -v buildah >/dev/null || { echo "no buildah here: step left out"; return 0; }
+  scripts/test_image.sh
+}
+
 step_format() {
   command -v clang-format >/dev/null || { echo "no clang-format here: step left out"; return 0; }
   scripts/format.sh --check
@@ -45,7 +51,7 @@ step_tidy() {
 
 main() {
   local steps=("$@") failed=()
-  [ $# -gt 0 ] || steps=(release asan tsan format tidy)
+  [ $# -gt 0 ] || steps=(release asan tsan image format tidy)
   scripts/setup.sh || exit 1
   for step in "${steps[@]}"; do
     declare -F "step_$step" >/dev/null || { echo "no step '$step'" >&2; exit 2; }
