@@ -36,6 +36,12 @@ Names names_in(const Setting& setting, const std::vector<std::string>& path) {
   return names;
 }
 
+/// Where a key stands and which it is; an option of the command line says both by itself.
+std::string place(const RawEntry& entry) {
+  const auto path = join_path(entry.path);
+  return entry.origin.ends_with(" " + path) ? entry.origin : entry.origin + ": " + path;
+}
+
 /// Known names for the first part of the path that no setting has: what a misspelt key may have meant.
 Error unknown_key(const RawEntry& entry) {
   std::vector<const Setting*> left;
@@ -51,12 +57,11 @@ Error unknown_key(const RawEntry& entry) {
     }
     if (next.empty()) {
       const auto hint = known.empty() ? std::string() : " (" + name_hint(entry.path[i], known) + ")";
-      return Error{ConfigError::unknown_key, entry.origin + ": " + join_path(entry.path) + hint};
+      return Error{ConfigError::unknown_key, place(entry) + hint};
     }
     left = std::move(next);
   }
-  return Error{ConfigError::unknown_key,
-               entry.origin + ": " + join_path(entry.path) + " is a section, not a key"};
+  return Error{ConfigError::unknown_key, place(entry) + " is a section, not a key"};
 }
 
 /// A section without keys counts: a sensor in it is there, and lacks what it needs.
@@ -88,7 +93,7 @@ Status apply(const RawEntry& entry, LoadedConfig& loaded) {
   if (setting == table.end()) return unknown_key(entry);
   const auto path = join_path(entry.path);
   if (auto status = setting->set(loaded.config, names_in(*setting, entry.path), entry.value); !status)
-    return Error{status.error().code, entry.origin + ": " + path + ": " + status.error().detail};
+    return Error{status.error().code, place(entry) + ": " + status.error().detail};
   loaded.origins[path] = entry.origin;
   return Done{};
 }

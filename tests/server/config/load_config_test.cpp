@@ -31,8 +31,8 @@ class LoadConfig : public ::testing::Test {
     return load_config({folder_ / "cell.toml", std::move(environment), std::move(overrides)});
   }
 
-  std::string failure(const std::string& toml) {
-    const auto loaded = load(toml);
+  std::string failure(const std::string& toml, std::vector<std::string> overrides = {}) {
+    const auto loaded = load(toml, {}, std::move(overrides));
     return loaded ? "" : loaded.error().message();
   }
 
@@ -97,6 +97,13 @@ TEST_F(LoadConfig, UnknownKeyIsRefusedWithLineAndNearestName) {
   const auto text = failure(std::string(kSmallest) + "[server]\nprot = 1\n");
   EXPECT_NE(text.find("cell.toml:5"), std::string::npos) << text;
   EXPECT_NE(text.find("did you mean 'port'"), std::string::npos) << text;
+}
+
+TEST_F(LoadConfig, AKeyOfTheCommandLineIsNamedOnce) {
+  const auto value = failure(kSmallest, {"server.port=abc"});
+  EXPECT_TRUE(value.starts_with("--set server.port: abc is not an integer")) << value;
+  const auto key = failure(kSmallest, {"server.prot=1"});
+  EXPECT_TRUE(key.starts_with("--set server.prot (did you mean 'port'")) << key;
 }
 
 TEST_F(LoadConfig, UnknownSectionIsRefusedWithNearestName) {
