@@ -33,6 +33,25 @@ function depfile(file, target) {
   };
 }
 
+/** The notices of others' code that the page is bundled with: their licences ask to go with it. */
+function notices() {
+  return {
+    name: "notices",
+    async generateBundle() {
+      const packages = new Set([...this.getModuleIds()].map((id) => id.match(/.*\/node_modules\/(@[^/]+\/)?[^/]+/)?.[0]).filter(Boolean));
+      const texts = await Promise.all([...packages].sort().map(notice));
+      this.emitFile({ type: "asset", fileName: "notices.txt", source: texts.join(`\n${"-".repeat(79)}\n\n`) });
+    },
+  };
+}
+
+async function notice(path) {
+  const { name, version, license } = JSON.parse(await readFile(join(path, "package.json"), "utf-8"));
+  const file = (await readdir(path)).find((entry) => /^licen[sc]e/i.test(entry));
+  const text = file ? await readFile(join(path, file), "utf-8") : `Licence: ${license}; its package brings no text of it.\n`;
+  return `${name} ${version} (${license})\n\n${text}`;
+}
+
 const folder = resolve(process.env.CALIBRD_WEB_OUT ?? "dist");
 const { CALIBRD_WEB_DEPFILE: dependencies, CALIBRD_WEB_TARGET: target } = process.env;
 
@@ -46,5 +65,5 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1000,
   },
-  plugins: [precompress(folder), ...(dependencies ? [depfile(dependencies, target)] : [])],
+  plugins: [notices(), precompress(folder), ...(dependencies ? [depfile(dependencies, target)] : [])],
 });

@@ -14,7 +14,9 @@ from pathlib import Path
 # Of a prefix. What is below share/doc is not listed here.
 LAYOUT = {"bin/calibrd", "bin/calibrd-sensor", "lib/calibrd/libcalibrd_pcl.so", "lib/systemd/system/calibrd.service",
           "lib/sysusers.d/calibrd.conf", "lib/tmpfiles.d/calibrd.conf", "lib/udev/rules.d/60-calibrd.rules", "share/man/man8/calibrd.8.gz"}
-OPTIONAL = ("share/calibrd/web/",)  # the page
+PAGE = "share/calibrd/web/"
+OPTIONAL = (PAGE,)
+OF_THE_PAGE = {PAGE + "index.html", PAGE + "notices.txt"}  # where it is at all
 DOCUMENTATION = {"README.md", "copyright", "changelog.gz", "docs/README.md", "docs/configuration.md", "examples/fanuc.toml"}
 CONFIGURATION = "etc/calibrd/calibrd.toml"
 DEPENDS = ("libopenni2-0", "libembree", "libpcl-filters", "libssl", "libsqlite3-0", "systemd")
@@ -30,7 +32,8 @@ def run(*words, **options) -> str:
 def layout_faults(what: str, files: set[str], prefix: str, configuration: str) -> list[str]:
     """What is missing, and what nobody asked for."""
     documentation = f"{prefix}share/doc/calibrd/"
-    wanted = {prefix + file for file in LAYOUT} | {documentation + file for file in DOCUMENTATION} | {configuration}
+    layout = LAYOUT | OF_THE_PAGE if any(file.startswith(prefix + PAGE) for file in files) else LAYOUT
+    wanted = {prefix + file for file in layout} | {documentation + file for file in DOCUMENTATION} | {configuration}
     allowed = (documentation, *(prefix + folder for folder in OPTIONAL))
     return ([f"{what} lacks {file}" for file in sorted(wanted - files)] +
             [f"{what} has {file}, which nobody asked for" for file in sorted(files - wanted) if not file.startswith(allowed)])
