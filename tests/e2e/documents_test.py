@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The calibrd authors
+# SPDX-License-Identifier: Apache-2.0
+"""The documentation does as it says: every command and program in its fenced blocks runs against the simulated cell, or is named
+below with what tests it, or why nothing here can."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from cell import BUILD, OF_THIS_BUILD, SENSOR, SOURCE, CellTest, call, wait_until
+
+DOCUMENTS = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").glob("*.md"))]
+FIRST, SECOND = "20261122T014643-192c11", "20261122T020110-77ab03"  # the calibrations of the examples
+ELSEWHERE = (
+    (r"(sudo )?scripts/\S+", "minutes to hours each; that there is such a script is looked at here"),
+    (r"docker |docker compose ", "takes an engine; scripts/test_image.sh builds and runs the same image"),
+    (r"sudo(edit)? |journalctl ", "changes the machine; scripts/test_package.sh does it in a root of its own"),
+    (r"calibrd healthcheck", "healthcheck_test.py"),
+    (r"calibrd-collector ", "tests/fleet"),
+    (r"xacro ", "is not ours"),
+    (r"curl .*http://cell7:", "security_test.py"),
+    (r"curl .*/robot/motions|jq .*next_posture_of", "motion_test.py"),
+    (r"curl .*\"left\", \"right\"", "several_sensors_test.py"),
+)
+# Ends that are right here, other than with status 0: what the command ends with, and what it says.
+ENDS = (
+    (r"curl -X DELETE .*/calibrations/", 22, "status 409"),  # it has ended
+    (r"curl .*Idempotency-Key", 22, "status 409"),           # the one asked for just before still runs
+    (r"build/release/bin/calibrd serve --config my_cell.toml --check-config", 2, "/etc/calibrd/robot/robot.urdf"),  # not filled in
+    (r"build/release/bin/calibrd-sensor --list", 3, "no depth sensor matches"),
+    (r"curl -N", 28, ""),                                    # has no end
+)
+LONGEST_S = 150
+
+
+class Block:
+    def __init__(self, language: str, text: str, where: str):
+        self.language, self.text, self.where = language, text, where
+
+    def commands(self) -> list[str]:
+        """Of a shell: lines that go on are one; a command that needs the one before it is with it."""
+        joined = re.sub(r"\s*\\\n\s*", " ", self.text)
+        joined = re.sub(r"\|\n\s*", "| ", joined)
+        return [re.sub(r"\s{2,}# .*$", "", line).strip() for line in joined.splitlines() if line.strip()]
+
+
+def blocks_of(document: Path) -> list[Block]:
+    text = document.read_text(encoding="utf-8")
+    return [Block(found[1], found[2], f"{document.name}:{text.count(chr(10), 0, found.start()) + 2}")
+            for found in re.finditer(r"^```(sh|python|cpp)\n(.*?)^```", text, re.DOTALL | re.MULTILINE)]
+
+
+class Documents(CellTest):
+    def setUp(self):
+        super().setUp()
+        simulator = self.simulate()
+        simulator.hurry()
+        self.daemon = self.serve(simulator, "drift.healing=off").wait_ready()
+        ids = [self.daemon.calibrate(postures=postures)["id"] for postures in (3, 2)]
+        self.real = {FIRST: ids[0], SECOND: ids[1], "127.0.0.1:8080": f"127.0.0.1:{self.daemon.port}",
+                     "/etc/calibrd/calibrd.toml": str(SOURCE / "config/demo.toml")}
+
+    def place(self, document: Path) -> Path:
+        """A folder that looks like the repository's root after a build."""
+        root = self.folder / document.stem
+        (root / "build").mkdir(parents=True)
+        for name, target in (("config", SOURCE / "config"), ("scripts", SOURCE / "scripts"), ("build/release", BUILD)):
+            (root / name).symlink_to(target)
+        (root / ".curlrc").write_text(f'silent\nshow-error\nmax-time = {LONGEST_S}\nwrite-out = "%{{stderr}}status %{{http_code}}\\n"\n')
+        if document.stem == "security":  # where the daemon of that cell would have them
+            shutil.copy(SOURCE / "config/demo.toml", root / "my_cell.toml")
+        return root
+
+    def environment(self, root: Path) -> dict[str, str]:
+        settings = {"CALIBRD_SERVER__PORT": str(self.daemon.port), "CALIBRD_ROBOT__URDF": OF_THIS_BUILD[0].split("=", 1)[1],
+                    "CALIBRD_SERVER__TOKENS_FILE": str(root / "tokens.json")}
+        if root.name not in ("security", "operations"):
+            settings = {}
+        return {**os.environ, **settings, "HOME": str(root), "PATH": f"{BUILD / 'bin'}:{os.environ['PATH']}"}
+
+    def put_real(self, text: str) -> str:
+        for example, real in self.real.items():
+            text = text.replace(example, real)
+        text = text.replace("curl -N", "curl -N --max-time 2")
+        return re.sub(r"\bcurl (?!-f)", "curl --fail-with-body ", text)
+
+    def run_in(self, root: Path, words: list[str], text: str | None = None) -> subprocess.CompletedProcess:
+        return subprocess.run(words, cwd=root, env=self.environment(root), input=text, capture_output=True, text=True,
+                              timeout=LONGEST_S + 30, check=False)
+
+    def check_shell(self, root: Path, block: Block) -> None:
+        pending = []
+        for command in block.commands():
+            if any(re.match(pattern, command) for pattern, _ in ELSEWHERE):
+                script = re.match(r"(?:sudo )?(scripts/\S+)", command)
+                self.assertTrue(not script or os.access(SOURCE / script[1], os.X_OK), f"{block.where}: there is no {command}")
+                continue
+            pending.append(command)
+        if not pending:
+            return
+        for command in self.grouped(pending):
+            for old in root.glob("*.tar") if "-OJ" in command else ():
+                old.unlink()  # it overwrites nothing
+            done = self.run_in(root, ["bash", "-euo", "pipefail", "-c", self.put_real(command)])
+            said = f"{block.where}: {command}\nstatus {done.returncode}\n{done.stdout[-500:]}\n{done.stderr[-500:]}"
+            allowed = [(0, ""), *((status, words) for pattern, status, words in ENDS if re.match(pattern, command))]
+            self.assertTrue(any(done.returncode == status and words in said for status, words in allowed), said)
+
+    @staticmethod
+    def grouped(commands: list[str]) -> list[str]:
+        """A variable lives as long as its shell: commands from an assignment on are one."""
+        for at, command in enumerate(commands):
+            if re.match(r"\w+=", command):
+                return [*commands[:at], "\n".join(commands[at:])]
+        return commands
+
+    def check_python(self, root: Path, block: Block) -> None:
+        done = self.run_in(root, [sys.executable, "-"], self.put_real(block.text))
+        self.assertEqual(done.returncode, 0, f"{block.where}: {done.stderr}")
+        self.assertNotIn("not valid", done.stdout, block.where)
+
+    def check_cpp(self, root: Path, block: Block) -> None:
+        (root / "snippet.cpp").write_text(self.put_real(block.text).replace('"8080"', f'"{self.daemon.port}"'))
+        private = SOURCE / ".deps/boost/usr/include"
+        words = [os.environ.get("CXX", "c++"), "-std=c++20", "-Wall", "-O0", "-isystem", private, "snippet.cpp", "-o", "snippet", "-pthread"]
+        done = self.run_in(root, [str(word) for word in words])
+        self.assertEqual(done.returncode, 0, f"{block.where}: {done.stderr}")
+        done = self.run_in(root, ["./snippet"])
+        self.assertEqual(done.returncode, 0, f"{block.where}: {done.stderr}")
+
+    def quiet(self) -> None:
+        """Nothing that a document began goes on into the next one."""
+        job = self.daemon.pose()["job"]
+        if job:
+            call(self.daemon.port, "DELETE", f"/api/v1/calibrations/{job}")
+            wait_until("the calibration has ended", lambda: not self.daemon.pose()["job"])
+        wait_until("the pose is valid", lambda: self.daemon.pose()["valid"], 60)
+
+    def test_every_command_of_the_documentation_works(self):
+        kinds = {"sh": self.check_shell, "python": self.check_python, "cpp": self.check_cpp}
+        for document in DOCUMENTS:
+            blocks = blocks_of(document)
+            if not blocks:
+                continue
+            root = self.place(document)
+            for block in blocks:
+                with self.subTest(block.where):
+                    self.quiet()
+                    kinds[block.language](root, block)
+
+
+if __name__ == "__main__":
+    unittest.main()
