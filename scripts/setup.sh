@@ -17,7 +17,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly kTools=(g++ cmake ninja-build pkgconf ccache git ca-certificates curl jq python3)
 readonly kLibraries=(
   libeigen3-dev libembree-dev libtbb-dev libnanoflann-dev                                # geometry
-  liburdfdom-dev liburdfdom-headers-dev libassimp-dev libspng-dev libsqlite3-dev          # files
+  liburdfdom-dev liburdfdom-headers-dev libconsole-bridge-dev libassimp-dev libspng-dev libsqlite3-dev          # files
   libcli11-dev libspdlog-dev libtomlplusplus-dev libssl-dev libopenni2-dev
   libmosquitto-dev libpq-dev                                                              # fleet
   libboost-dev # headers; for PCL, and where it is new enough for all of calibrd
