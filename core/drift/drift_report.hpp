@@ -19,6 +19,7 @@ struct DriftReport {
   double same = 0, nearer = 0, farther = 0, dark = 0;  ///< shares of the background in view
   std::optional<Pose>
       T_base_sensor_seen;  ///< where the background says the sensor is; only once it has moved
+  double seen_turn_sigma_rad = 0, seen_shift_sigma_m = 0;  ///< of that, about the middle of the background
 };
 
 }  // namespace calibrd

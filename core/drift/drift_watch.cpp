@@ -9,7 +9,6 @@ namespace calibrd {
 namespace {
 
 constexpr double kGap_s = 1.5;  // between frames: the sensor was away
-constexpr int kQuietFrames = 10;
 /// A background that is nowhere for so long: the sensor looks elsewhere; sooner where it is seen from there.
 constexpr double kLost_s = 0.5, kElsewhere_s = 0.3;
 constexpr int kFoundAgain = 5;      // frames on end that show it where it was
@@ -18,16 +17,12 @@ constexpr double kLeastLeft = 0.1;  // share of it that is where it was
 /// Where a moved sensor is now is told pixel by pixel only when so much of the background is still where it
 /// was: a fit to less settles anywhere.
 constexpr double kLeastSame = 0.8;
-constexpr int kRealignEvery = 3;    // frames; it takes some milliseconds
-constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by so long
+constexpr int kRealignEvery = 3;  // frames; it takes some milliseconds
 /// A background that shows every direction so well finds a creep by itself before it is worth a word.
 constexpr double kFinely_m = 1e-3, kFinely_rad = 1e-3;
 /// By how much (−2 log likelihood) the robot must speak for standing still before the background's word that
 /// the sensor has moved is not believed, or for the move before it is believed at once.
 constexpr double kDenial = 16;
-constexpr double kRobotHolds_s = 10;
-/// A person who passes is no reason to doubt; a lens that is covered is: nobody passes so near.
-constexpr double kOutOfSight_s = 2, kDark_s = 0.5;
 constexpr double kOffsetMean_s = 1;
 constexpr double kBias_s = 2;     // ... must have lasted
 constexpr double kBiasOff = 0.7;  // share of the limit at which the verdict ends
@@ -254,47 +249,8 @@ void DriftWatch::describe(const BackgroundObservation& observation) {
   if (!moved_ || !observation.has_evidence || !is_known || !is_fit) return;
   report_.T_base_sensor_seen =
       observation.realigned ? T_base_sensor_ * *T_learnt_now_ : perturbed(T_base_sensor_, observation.shift);
-}
-
-bool DriftWatch::is_in_place() const {
-  return has_background() && !moved_ && word_.pins_within(kEvidence_s, frame_s_) && !is_doubtful() &&
-         quiet_frames_ >= kQuietFrames;
-}
-
-/// Something has said just now that the sensor stands, in every direction.
-bool DriftWatch::is_known_to_stand() const {
-  return word_.pins_within(kEvidence_s, frame_s_) || robot_word_.agrees_within(RobotWord::kOfNow_s, frame_s_);
-}
-
-/// A wall leaves directions open: of these the robot's word holds longer, while it works and the wall stands.
-bool DriftWatch::is_seen() const {
-  const bool told = robot_word_.agrees_within(kRobotHolds_s, frame_s_);
-  return is_known_to_stand() || (told && frame_s_ - evidence_s_ < kEvidence_s);
-}
-
-bool DriftWatch::is_out_of_sight() const {
-  const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_) && !dispute_.is_denied();
-  const double patience_s = is_dark() ? kDark_s : kOutOfSight_s;
-  const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > patience_s;
-  return has_background() && (is_disputed || is_nowhere) &&
-         !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);
-}
-
-void DriftWatch::judge(double now_s) {
-  const bool in_front = now_s - in_front_s_ < kInFront_s;
-  if (moved_)
-    report_.verdict = DriftVerdict::sensor_moved;
-  else if (model_wrong_)
-    report_.verdict = DriftVerdict::robot_model_wrong;
-  else if (!is_seen())
-    report_.verdict =
-        in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
-  else if (bias_changed_)
-    report_.verdict = DriftVerdict::depth_bias_changed;
-  else if (scene_.has_changed() || now_s - denied_s_ < kEvidence_s)
-    report_.verdict = DriftVerdict::scene_changed;
-  else
-    report_.verdict = in_front ? DriftVerdict::something_in_front : DriftVerdict::in_place;
+  report_.seen_turn_sigma_rad = report_.turn_sigma_rad;
+  report_.seen_shift_sigma_m = report_.shift_sigma_m;
 }
 
 }  // namespace calibrd

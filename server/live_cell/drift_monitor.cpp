@@ -165,9 +165,11 @@ double DriftMonitor::depth_offset_change_m() const {
   return newest_.depth_offset_change_m;
 }
 
-std::optional<Pose> DriftMonitor::T_base_sensor_seen() const {
+std::optional<RestingPlace::Sight> DriftMonitor::sensor_seen() const {
   const std::lock_guard lock(mutex_);
-  return newest_.T_base_sensor_seen;
+  if (!newest_.T_base_sensor_seen) return std::nullopt;
+  return RestingPlace::Sight{*newest_.T_base_sensor_seen, newest_.seen_shift_sigma_m,
+                             newest_.seen_turn_sigma_rad};
 }
 
 api::DriftReport DriftMonitor::report() const {

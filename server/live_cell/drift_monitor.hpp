@@ -9,6 +9,7 @@
 
 #include "api/service/reports.hpp"
 #include "core/drift/drift_watch.hpp"
+#include "server/live_cell/resting_place.hpp"
 
 namespace calibrd {
 
@@ -46,7 +47,7 @@ class DriftMonitor {
   /// How much more the range reads than when the background was learnt, m.
   double depth_offset_change_m() const;
   /// Where a sensor that has moved is now, as far as the background tells.
-  std::optional<Pose> T_base_sensor_seen() const;
+  std::optional<RestingPlace::Sight> sensor_seen() const;
   /// The background as it was learnt for the pose that was set last; nothing while it is not known. What has
   /// come since and stands for long is not in it.
   std::shared_ptr<const BackgroundMap> background() const;

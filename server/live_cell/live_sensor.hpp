@@ -19,6 +19,7 @@
 #include "server/live_cell/live_robot.hpp"
 #include "server/live_cell/offset_watch.hpp"
 #include "server/live_cell/pose_watch.hpp"
+#include "server/live_cell/resting_place.hpp"
 #include "server/live_cell/sighting.hpp"
 #include "server/live_cell/view_gate.hpp"
 
@@ -147,7 +148,7 @@ class LiveSensor {
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
   // The thread's own.
-  std::optional<Pose> resting_at_;    // where a sensor that has moved was seen first, or last come to rest
+  RestingPlace resting_place_;
   std::uint64_t resting_number_ = 0;  // of the pose that it has moved from
   const std::shared_ptr<const LinkReach> reach_;
   OffsetWatch offset_;  // its report(): anybody's

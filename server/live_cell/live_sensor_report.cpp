@@ -53,7 +53,8 @@ api::DriftReport LiveSensor::drift() const {
 }
 
 std::optional<Pose> LiveSensor::seen_pose() const {
-  return monitor_ ? monitor_->T_base_sensor_seen() : std::nullopt;
+  const auto seen = monitor_ ? monitor_->sensor_seen() : std::nullopt;
+  return seen ? std::optional(seen->T_base_sensor) : std::nullopt;
 }
 
 api::SensorReport LiveSensor::report() const {

@@ -6,13 +6,6 @@
 #include "server/live_cell/live_sensor.hpp"
 
 namespace calibrd {
-namespace {
-
-/// A sensor that has moved is seen from frame to frame within this, once it rests.
-constexpr double kRest_m = 0.005, kRest_rad = 0.004;
-
-}  // namespace
-
 void LiveSensor::watch(const Sighting& sighting) {
   if (!monitor_) return;
   monitor_->add_frame(sighting.view);
@@ -39,21 +32,14 @@ void LiveSensor::forget_evidence(bool was_plausible) {
   if (was_plausible && !watch_.is_plausible()) evidence_.reset();
 }
 
-/// Views of before and after a move never come together, also while the sensor goes on moving.
 void LiveSensor::notice_move() {
   std::uint64_t pose_number = 0;
   {
     const std::lock_guard lock(mutex_);
     pose_number = pose_number_;
   }
-  if (std::exchange(resting_number_, pose_number) != pose_number) resting_at_.reset();
-  const auto seen = monitor_->T_base_sensor_seen();
-  if (!seen && !resting_at_) return;
-  if (seen && resting_at_) {
-    const Vector6d since = difference(*resting_at_, *seen);
-    if (since.head<3>().norm() < kRest_rad && since.tail<3>().norm() < kRest_m) return;
-  }
-  resting_at_ = seen;
+  if (std::exchange(resting_number_, pose_number) != pose_number) resting_place_.forget();
+  if (!resting_place_.is_new(monitor_->sensor_seen())) return;
   {
     const std::lock_guard lock(mutex_);
     moved_at_ = Clock::now();
