@@ -57,19 +57,23 @@ class Table(unittest.TestCase):
 
     def test_hours_add_up(self):
         cell = {"seed": 300001, "robot": "arm", "frames": 54000, "with_evidence": 5, "false_alarms": 1, "largest": 3.0,
-                "threshold": 10.7, "scene_changes": 4, "ms_median": 1.0, "ms_99": 1.4, "seconds": {"in_place": 1800}}
+                "threshold": 10.7, "scene_changes": 4, "ms_median": 1.0, "ms_99": 1.4, "seconds": {"in_place": 1800},
+                "unseen_s": 1.5, "robot_doubt": 0.3, "creep_doubt": 0.1, "checks": 500}
         text = printed([cell, cell | {"seed": 300002, "false_alarms": 0, "largest": 4.5}]).stdout
+        self.assertIn("nothing showed that the sensor stands: 3.0 s", text)
+        self.assertIn("at most: 0.30 in postures one by one, 0.10 in their mean; comparisons: 1000", text)
         self.assertIn("108000 frames = 1.00 h, 8 changes of the scene; false alarms: 1; largest statistic 4.50 of 10.70",
                       text)
 
     def test_tail_of_known_peaks(self):
         source, scale = random.Random(3), 0.5
-        blocks = [{"cell": 1, "frames": 1800, "peaks": [1 + source.expovariate(1 / scale) for _ in range(50)]}
+        blocks = [{"cell": 1, "frames": 1800,
+                   "tails": [{"tolerance_share": 1.0, "peaks": [1 + source.expovariate(1 / scale) for _ in range(50)]}]}
                   for _ in range(60)]
         drawn = {"resampled_h": 72.0, "blocks": 60, "block_s": 60.0, "alarms": 0, "largest": 6.0, "threshold": 10.0}
         text = printed(blocks + [drawn]).stdout
         years = 60 * 60 / 3000 * math.exp(9 / scale) / (365.25 * 86400)
-        told = float(text.split("peaks: ")[1].split(" years")[0])
+        told = float(text.split("peaks, largest ")[1].split(": ")[1].split(" years")[0])
         low, high = (float(word) for word in text.split("blocks: ")[1].split(" years")[0].split(" to "))
         self.assertLess(abs(math.log(told / years)), 2.5)
         self.assertLess(low, years)
