@@ -84,6 +84,7 @@ void LiveSensor::take_up(DepthFrame frame) {
   if (const auto verdict = gate_.enter(frame.sequence, frame.stamp, &frame.depth);
       verdict != FrameVerdict::usable)
     return note(verdict);
+  if (is_blind()) lose();  // also where it is the daemon that was stopped
   entered_at_ = Clock::now();
   auto& entered = *pending_.emplace_back(std::make_shared<Sighting>());
   entered.view.depth = std::move(frame.depth);
@@ -148,10 +149,15 @@ void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
 /// A sensor that was away, if only for a restart of its process, may have been moved. One whose frames are
 /// all the same, or out of order, tells as little as one that sends none.
 void LiveSensor::notice_loss(const SensorHealth& health) {
-  const bool away =
-      health.state != SensorHealth::State::streaming || Clock::now() - entered_at_ > kBlindAfter;
+  const bool away = health.state != SensorHealth::State::streaming || is_blind();
   if (!away && health.restarts == restarts_) return;
   restarts_ = health.restarts;
+  lose();
+}
+
+bool LiveSensor::is_blind() const { return Clock::now() - entered_at_ > kBlindAfter; }
+
+void LiveSensor::lose() {
   {
     const std::lock_guard lock(mutex_);
     lost_at_ = Clock::now();

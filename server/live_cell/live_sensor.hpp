@@ -134,6 +134,8 @@ class LiveSensor {
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);
+  bool is_blind() const;
+  void lose();
   void watch_offset();
   void tell_of_pose();
   double frame_rate_hz(Clock::time_point now) const;

@@ -162,6 +162,20 @@ class Stopped(ClockTest):
         self.assertEqual(sensor["health"], "streaming")
         self.assertLessEqual(took, WITHIN_S)
 
+    def test_a_sensor_that_was_knocked_meanwhile_is_not_called_good(self):
+        daemon = self.calibrated("drift.healing=off")
+        stop(daemon)
+        self.simulator.tell("POST", f"/sensors/{SENSOR}/knock", shift_m=[0.0, 0.006, 0.004], turn_deg=[0.0, 0.0, 0.4])
+        time.sleep(2)
+        os.kill(daemon.process.pid, signal.SIGCONT)
+        resumed, wrong_s = time.monotonic(), 0.0
+        while (pose := self.ask.json(POSE))["state"] != "drifted":
+            wrong_s = time.monotonic() - resumed if pose["valid"] else wrong_s
+            self.assertLess(time.monotonic() - resumed, 10, pose)
+            time.sleep(0.01)
+        print(f"the pose of before the knock was served for {wrong_s:.2f} s after the stop")
+        self.assertLess(wrong_s, 0.3)
+
     def test_what_is_asked_after_a_stop_tells_ages_that_hold_the_stop(self):
         daemon = self.calibrated()  # max_unverified of a minute: the pose may stay valid, and says how old it is
         before = self.ages()
