@@ -21,14 +21,14 @@ build() { cmake --preset "$1" && cmake --build --preset "$1"; }
 
 step_release() { build release && ctest --preset release -C Deep -L deep --no-tests=ignore; }
 
-step_asan() { build asan && ctest --preset asan --parallel "$(nproc)"; }
+step_asan() { build asan && ctest --preset asan --parallel "$((3 * $(nproc)))"; }
 
 # GCC's thread sanitizer cannot live with the address layout of newer kernels: switch its randomisation off.
 step_tsan() {
   local fixed=()
   setarch -R true 2>/dev/null && fixed=(setarch -R)
   "${fixed[@]}" cmake --preset tsan && "${fixed[@]}" cmake --build --preset tsan &&
-    "${fixed[@]}" ctest --preset tsan --parallel "$(nproc)"
+    "${fixed[@]}" ctest --preset tsan --parallel "$((3 * $(nproc)))"
 }
 
 step_image() {

@@ -17,15 +17,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly kUser=10001 kMostMb=250 kSensor=kinect2 kApi=http://127.0.0.1:8080 kAuthorities=/etc/ssl/certs/ca-certificates.crt
 readonly kRun=(buildah run --isolation chroot)
-work='' containers=() pids=() run=''
-
-say() { printf 'image: %4d s  %s\n' "$SECONDS" "$*" >&2; }
-
-die() {
-  say "FAILED: $*"
-  tail -n 30 "$work"/*.log >&2 2>/dev/null || true
-  exit 1
-}
+told_by=image work='' watched='' containers=() pids=() daemon='' begin=''
+# shellcheck source=scripts/lib/staged_run.sh
+. scripts/lib/staged_run.sh
 
 # Programs of the image that PID has started, PID itself among them.
 descendants() {
@@ -101,17 +95,6 @@ changes() {
     -o -path "$root/run" -o -path "$root/etc" \) -prune -o -newercm "$work/$1.made" -print | sed "s|^$root||" | grep -v '^$' || true
 }
 
-# wait_for SECONDS WHAT COMMAND...
-wait_for() {
-  local deadline=$((SECONDS + $1)) what=$2
-  shift 2
-  until "$@" >/dev/null 2>&1; do
-    [ $SECONDS -lt $deadline ] || die "waited in vain for $what"
-    [ -z "$run" ] || kill -0 "$run" 2>/dev/null || die "the daemon ended while waiting for $what"
-    sleep 0.2
-  done
-}
-
 start_cell() {
   "${kRun[@]}" --volume "$work/world:/world" calibrd-test-cell -- calibrd-sim run --world /usr/share/calibrd/world.json \
     --urdf /usr/share/calibrd/robots/demo_arm7/urdf/demo_arm7.urdf --models /usr/share/calibrd/robots \
@@ -125,10 +108,10 @@ start_daemon() {
   "${kRun[@]}" --volume "$work/world:/world" --volume "$work/data:/data" --env CALIBRD_SIM_WORLD=/world/world \
     --env CALIBRD_SERVER__ALLOW_UNAUTHENTICATED=true calibrd-test-daemon -- calibrd serve --config /config/calibrd.toml \
     >"$work/daemon.log" 2>&1 &
-  run=$!
-  pids+=("$run")
+  watched=$!
+  pids+=("$watched")
   wait_for 60 "robot and sensor" "${kRun[@]}" calibrd-test-daemon -- calibrd healthcheck --config /config/calibrd.toml --ready
-  daemon=$(program "$run" calibrd)
+  daemon=$(program "$watched" calibrd)
   [ "$(stat -c %u "/proc/$daemon")" = $kUser ] || die "the daemon does not run as its user"
 }
 
@@ -137,8 +120,8 @@ stop_daemon() {
   local told
   told=$(date +%s.%N)
   kill -TERM "$daemon"
-  wait "$run" || die "the daemon did not end well"
-  run=''
+  wait "$watched" || die "the daemon did not end well"
+  watched=''
   say "stopped in $(since "$told") s"
 }
 

@@ -14,15 +14,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly kBuild=build/${CALIBRD_PRESET:-release} kHealthcheck=(/usr/bin/calibrd healthcheck)
 readonly kEnvironment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
 readonly kAsDaemon=(setpriv --reuid calibrd --regid calibrd --init-groups --no-new-privs --inh-caps=-all)
-work='' root='' pids=() daemon=''
-
-say() { printf 'package: %4d s  %s\n' "$SECONDS" "$*" >&2; }
-
-die() {
-  say "FAILED: $*"
-  tail -n 30 "$work"/*.log >&2 2>/dev/null || true
-  exit 1
-}
+told_by=package work='' root='' pids=() watched=''
+# shellcheck source=scripts/lib/staged_run.sh
+. scripts/lib/staged_run.sh
 
 clean_up() {
   local pid
@@ -125,17 +119,6 @@ check_unit() {
     die "the unit is more exposed than 3.0"
 }
 
-# wait_for SECONDS WHAT COMMAND...
-wait_for() {
-  local deadline=$((SECONDS + $1)) what=$2
-  shift 2
-  until "$@" >/dev/null 2>&1; do
-    [ $SECONDS -lt $deadline ] || die "waited in vain for $what"
-    [ -z "$daemon" ] || kill -0 "$daemon" 2>/dev/null || die "the daemon ended while waiting for $what"
-    sleep 0.2
-  done
-}
-
 # The simulator stays outside; what it shows of itself, and the sensor's driver, are put into the root as a user would.
 bring_cell() {
   local robots=$kBuild/share/calibrd/robots folder=$root/srv/cell
@@ -163,17 +146,17 @@ run_daemon() {
   env -i "${kEnvironment[@]}" CALIBRD_SIM_WORLD=/srv/cell/world chroot "$root" "${kAsDaemon[@]}" \
     /usr/bin/calibrd serve --config /etc/calibrd/calibrd.toml \
     >"$work/daemon.log" 2>&1 &
-  daemon=$! && pids+=("$daemon")
+  watched=$! && pids+=("$watched")
   wait_for 60 "life" as_daemon "${kHealthcheck[@]}"
   wait_for 60 "robot and sensor" as_daemon "${kHealthcheck[@]}" --ready
   for path in livez readyz; do
     [ "$(curl -sS -o /dev/null -w '%{http_code}' "http://127.0.0.1:$port/$path")" = 200 ] || die "/$path is not 200"
   done
-  [ "$(stat -c %u "/proc/$daemon")" = "$(in_root id -u calibrd)" ] || die "it does not run as its user"
+  [ "$(stat -c %u "/proc/$watched")" = "$(in_root id -u calibrd)" ] || die "it does not run as its user"
   in_root stat -c %U /var/lib/calibrd/calibrd.db | grep -qx calibrd || die "it keeps no database of its own"
-  kill -TERM "$daemon"
-  wait "$daemon" || die "it did not end well"
-  daemon=''
+  kill -TERM "$watched"
+  wait "$watched" || die "it did not end well"
+  watched=''
 }
 
 purge() {

@@ -66,7 +66,7 @@ void DriftWatch::absorb(double now_s) {
 /// has said since the dispute began that the sensor has not slid: so it is the box.
 void DriftWatch::absorb_what_was_pushed(double now_s) {
   if (!dispute_.is_open_for(settings_.absorb_s, now_s)) return;
-  if (!robot_word_.agrees_since(dispute_.since_s(), now_s)) return;
+  if (!dispute_.is_denied() || !robot_word_.agrees_since(dispute_.since_s(), now_s)) return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
   const int width = map_.grid().width;
   for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -13,6 +13,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 constexpr double kRobotHolds_s = 10;
 /// A person who passes is no reason to doubt; a lens that is covered is: nobody passes so near.
 constexpr double kOutOfSight_s = 2, kDark_s = 0.5;
+constexpr double kDisputed_s = 1;  // unsettled for so long: time for the robot to deny it
 
 }  // namespace
 
@@ -33,11 +34,20 @@ bool DriftWatch::is_seen() const {
 }
 
 bool DriftWatch::is_out_of_sight() const {
-  const bool is_disputed = dispute_.is_open_for(kOutOfSight_s, frame_s_) && !dispute_.is_denied();
   const double patience_s = is_dark() ? kDark_s : kOutOfSight_s;
   const bool is_nowhere = frame_s_ - std::max(evidence_s_, learnt_s_) > patience_s;
-  return has_background() && (is_disputed || is_nowhere) &&
-         !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_);
+  return has_background() &&
+         (is_disputed() || (is_nowhere && !robot_word_.agrees_since(frame_s_ - kOutOfSight_s, frame_s_)));
+}
+
+/// A comparison with the robot agrees within its own uncertainty, which may be more than the slide: what
+/// counts is which of the two it speaks for.
+bool DriftWatch::is_disputed() const {
+  return dispute_.is_open_for(kDisputed_s, frame_s_) && !dispute_.is_denied();
+}
+
+bool DriftWatch::is_contested() const {
+  return is_disputed() || (model_wrong_ && !word_.pins_within(kEvidence_s, frame_s_));
 }
 
 void DriftWatch::judge(double now_s) {
@@ -46,7 +56,7 @@ void DriftWatch::judge(double now_s) {
     report_.verdict = DriftVerdict::sensor_moved;
   else if (model_wrong_)
     report_.verdict = DriftVerdict::robot_model_wrong;
-  else if (!is_seen())
+  else if (!is_seen() || is_disputed())
     report_.verdict =
         in_front || report_.nearer > 0.5 ? DriftVerdict::something_in_front : DriftVerdict::no_evidence;
   else if (bias_changed_)

@@ -32,14 +32,17 @@ std::vector<RobotShift> shifts_of(const std::vector<PoseCheck>& checks) {
 
 void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joints_rad, double now_s) {
   robot_word_.add(check, joints_rad, now_s);
-  if (dispute_.is_open() && check.agrees && preference_of(check, dispute_.turn_shift()) > 0) dispute_.deny();
+  if (dispute_.is_open() && check.enough_evidence) {
+    const double preference = preference_of(check, dispute_.turn_shift());
+    dispute_.hear(check.agrees ? preference : std::min(preference, 0.0), robot_word_.postures(), now_s);
+  }
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
   if (model_wrong_ || moved_) return;
   if (robot_word_.is_against()) {
     moved_ = is_robots_shift_possible(shifts_of(robot_word_.doubts()));
     model_wrong_ = !moved_;
   } else {
-    moved_ = has_crept();
+    moved_ = has_crept() || dispute_.is_affirmed();
   }
 }
 

@@ -55,8 +55,8 @@ class DriftWatch {
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
   bool wants_check() const {
-    const bool is_disputed = dispute_.is_open() && !robot_word_.agrees_within(kEvidence_s, frame_s_);
-    return is_doubtful() || is_disputed || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
+    const bool is_unsettled = dispute_.is_open() && !dispute_.is_denied();
+    return is_doubtful() || is_unsettled || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
   }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
@@ -66,8 +66,9 @@ class DriftWatch {
   /// Most of the background has no depth in the last frame: whatever happens meanwhile, nobody sees it.
   bool is_dark() const { return has_background() && report_.dark > kDarkShare; }
   /// Postures on end have spoken against pose and model, and the background does not show that it is the
-  /// model: while that lasts no posture that agrees makes the pose good.
-  bool is_contested() const { return model_wrong_ && !word_.pins_within(kEvidence_s, frame_s_); }
+  /// model; or one thing in view says that the sensor has slid, and the robot has not denied it: while that
+  /// lasts no posture that agrees makes the pose good.
+  bool is_contested() const;
   /// The sensor was away: what was seen before says nothing of where it is now.
   void on_gap();
 
@@ -111,6 +112,7 @@ class DriftWatch {
   bool is_one_move(std::span<const RobotShift> postures) const;
   bool has_crept() const;
   bool is_what_was_followed(const RobotShift& robot) const;
+  bool is_disputed() const;
   bool is_known_to_stand() const;
   bool is_seen() const;
   bool is_doubtful() const { return test_.statistic() > 0.2 * test_.threshold(); }

@@ -33,6 +33,7 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
     posture_.assign(joints.begin(), joints.end());
     before_posture_ = std::min(statistic_, kLimit);  // what is mended shows soon
     posture_sigmas_ = posture_checks_ = 0;
+    ++postures_;
     mean_.end_posture(now_s);
   }
   newest_ = check;

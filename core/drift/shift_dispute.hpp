@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
-
 #include "core/drift/background_match.hpp"
 #include "core/geometry/pose.hpp"
 
 namespace calibrd {
 
-/// A shift that one thing in view alone shows, over frames: either it was pushed, or the sensor has slid.
+/// A shift that one thing in view alone shows, over frames: either it was pushed, or the sensor has slid; and
+/// what the robot says of that. Comparisons of one posture all err alike, so each posture has one voice.
 /// Without I/O.
 class ShiftDispute {
  public:
@@ -17,9 +16,14 @@ class ShiftDispute {
   void add(const CellWindow& window, const Vector6d& turn_shift, double now_s);
   /// A frame does not. A few of these end nothing.
   void add_none(double now_s);
-  /// The robot says that it is not the sensor's: holds while it stays what it is.
-  void deny() { denied_ = turn_shift_; }
+  /// By how much (−2 log likelihood) a comparison with the robot, in the `posture`-th posture that was looked
+  /// at, speaks for a sensor that stands rather than for one that has slid so. What was said counts while the
+  /// shift stays what it is.
+  void hear(double preference, int posture, double now_s);
+  /// The robot says that the sensor stands ...
   bool is_denied() const;
+  /// ... or, in several postures, that it has slid.
+  bool is_affirmed() const;
   /// It is known what it was.
   void settle() { since_s_ = -1; }
 
@@ -30,10 +34,19 @@ class ShiftDispute {
   const Vector6d& turn_shift() const { return turn_shift_; }  ///< mean of the last frames
 
  private:
+  struct Heard {
+    Vector6d of = Vector6d::Zero();  // the shift that it is said of
+    int posture = -1, postures = 0, comparisons = 0;
+    double mean = 0, before = 0;  // of this posture, and all of those before
+    double since_s = 0, newest_s = 0;
+  };
+  double voice() const;
+  double heard() const { return heard_.before + voice(); }
+
   double since_s_ = -1, seen_s_ = -1e9;
   CellWindow window_;
   Vector6d turn_shift_ = Vector6d::Zero();
-  std::optional<Vector6d> denied_;
+  Heard heard_;
 };
 
 }  // namespace calibrd

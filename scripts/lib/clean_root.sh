@@ -24,7 +24,7 @@ make_root_archive() {
     chmod 755 "$root" # every user looks in
     # In a mount namespace of its own: what debootstrap mounts goes with it.
     unshare --mount debootstrap --variant=minbase "$suite" "$root" "$(debian_mirror)" >&2 || return 1
-    # What this machine needs to reach that mirror; no keys or passwords lie there.
+    # What this machine needs to reach that mirror, as a proxy; a password in it would be kept in the archive, which stays here.
     cp /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
     rm -rf "$root"/var/cache/apt/archives/*.deb "$root"/var/lib/apt/lists/*
     tar -C "$root" --one-file-system -cf "$archive.part" .

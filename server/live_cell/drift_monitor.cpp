@@ -14,8 +14,11 @@ constexpr double kSamplePeriod_s = 1;
 /// Frames that passed a check, to learn a background from, a second apart: of two postures, for one shows
 /// nothing behind the robot; of one where the robot keeps standing.
 constexpr std::size_t kFramesToLearn = 3, kMostFramesToLearn = 10;
-/// A sensor that has moved by 3 mm or 3 mrad shows within so many (docs/figures.md).
+/// A sensor that has moved by 3 mm or 3 mrad shows within so many (docs/figures.md) of its background.
 constexpr int kFramesToShow = 15;
+/// While the background is hidden, as behind something that was parked there, the robot alone can tell: it is
+/// heard after so many times as many.
+constexpr int kHiddenFramesForOne = 4;
 /// Without a frame for so long nothing is known of now.
 constexpr api::Seconds kSilent{2};
 constexpr double kBetweenFrames_s = 1, kOtherPosture_rad = 0.1;
@@ -34,7 +37,7 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   newest_ = fresh_;
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
   in_place_ = wants_check_ = out_of_sight_ = contested_ = false;
-  frames_seen_ = 0;
+  quarters_seen_ = 0;
 }
 
 void DriftMonitor::on_sensor_lost() {
@@ -42,12 +45,12 @@ void DriftMonitor::on_sensor_lost() {
   watch_->on_gap();
   const std::lock_guard lock(mutex_);
   in_place_ = false;
-  frames_seen_ = 0;
+  quarters_seen_ = 0;
 }
 
 bool DriftMonitor::has_looked() const {
   const std::lock_guard lock(mutex_);
-  return !background_ || frames_seen_ >= kFramesToShow;
+  return !background_ || quarters_seen_ >= kHiddenFramesForOne * kFramesToShow;
 }
 
 void DriftMonitor::take_order() {
@@ -84,9 +87,9 @@ void DriftMonitor::add_frame(const View& frame) {
 void DriftMonitor::count_frame() {
   frames_dark_ = watch_->is_dark() ? frames_dark_ + 1 : 0;
   if (frames_dark_ >= kFramesToShow)
-    frames_seen_ = 0;
+    quarters_seen_ = 0;
   else if (frames_dark_ == 0)
-    ++frames_seen_;
+    quarters_seen_ += watch_->innovation() ? kHiddenFramesForOne : 1;
 }
 
 void DriftMonitor::note(const DriftReport& report, double now_s) {

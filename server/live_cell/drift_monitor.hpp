@@ -74,8 +74,8 @@ class DriftMonitor {
   DriftReport newest_;
   std::shared_ptr<const BackgroundMap> background_;
   bool in_place_ = false, wants_check_ = false, out_of_sight_ = false, contested_ = false;
-  int frames_seen_ = 0;  // since the pose was set, or the sensor lost
-  int frames_dark_ = 0;  // on end
+  int quarters_seen_ = 0;  // of frames, since the pose was set, or the sensor lost
+  int frames_dark_ = 0;    // on end
   Clock::time_point stamp_;
   std::deque<api::DriftSample> series_;  // one for each second, the largest statistic of it
   std::deque<api::DriftEvent> events_;

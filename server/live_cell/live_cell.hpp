@@ -144,6 +144,8 @@ class LiveCell : public api::CellService {
              const Surroundings& surroundings);
   std::shared_ptr<const BackgroundMap> stored_background(const api::CalibrationReport& calibration);
   Surroundings review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result);
+  void reject_if_moved(const CameraModel& camera, std::span<const View> views,
+                       CalibrationResult& result) const;
   Result<std::vector<View>> collect(Entry& entry, const api::CaptureRequest& request);
   EvidenceKeeper evidence_keeper();
   void keep_views(const api::CalibrationReport& calibration, const LiveSensor& sensor,

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The part of LiveCell that looks at several sensors at once.
+#include <cmath>
+
 #include "api/problem/api_error.hpp"
+#include "core/drift/moved_meanwhile.hpp"
 #include "server/live_cell/live_cell.hpp"
 
 namespace calibrd {
@@ -48,8 +51,26 @@ std::vector<api::SensorPair> LiveCell::cross_checks() const {
   return compare_pairs(sensors);
 }
 
+/// A sensor that was knocked between two views has no one pose that they show.
+void LiveCell::reject_if_moved(const CameraModel& camera, std::span<const View> views,
+                               CalibrationResult& result) const {
+  const auto move =
+      ViewsInOrder(virtual_cell_, camera).find_move(views, *result.T_base_sensor, result.depth_correction);
+  if (!move) return;
+  const std::string witness =
+      move->witness == MovedMeanwhile::Witness::robot ? "the robot" : "what stands around the robot";
+  result.verdict = Verdict::rejected;
+  result.reasons.push_back(
+      {"sensor_moved_meanwhile",
+       "the sensor seems to have moved while its postures were collected: between posture " +
+           std::to_string(move->before + 1) + " and the next " + witness + " shifts by " +
+           std::to_string(std::lround(1e3 * move->shift_m)) + " mm and " +
+           std::to_string(std::lround(1e3 * move->turn_rad)) + " mrad; see that it is fixed, start again"});
+}
+
 Surroundings LiveCell::review(LiveSensor& sensor, std::span<const View> views, CalibrationResult& result) {
-  if (!estimator_.make_watch) return {};
+  reject_if_moved(sensor.camera(), views, result);
+  if (!estimator_.make_watch || result.verdict != Verdict::accepted) return {};
   RobotMask robot(virtual_cell_, sensor.camera());
   auto background = std::make_shared<const BackgroundMap>(
       learn_background(robot, sensor.camera(), views, *result.T_base_sensor));

@@ -10,6 +10,10 @@ namespace {
 
 /// The background's word holds for so long.
 constexpr auto kInPlace = std::chrono::seconds(1);
+/// After one that disagreed, a comparison that agrees only just may be chance: a pose that is off by as much
+/// as the limit would be good one moment and bad the next. Well within it one is enough, else these on end.
+constexpr double kWellWithin_sigmas = 3;
+constexpr int kAgreementsOnEnd = 20;
 
 }  // namespace
 
@@ -86,11 +90,16 @@ void PoseWatch::on_check(const PoseCheck& check, Clock::time_point now) {
   last_ = check;
   if (!objection_.empty() || state_ == PoseState::drifted) return;
   if (check.agrees && is_contested_) return;
-  check.agrees ? agree(now) : disagree(now);
+  check.agrees ? agree(check, now) : disagree(now);
 }
 
-void PoseWatch::agree(Clock::time_point now) {
+void PoseWatch::agree(const PoseCheck& check, Clock::time_point now) {
   disagreements_ = 0;
+  ++agreements_;
+  const bool was_off =
+      state_ == PoseState::unverified && (doubt_ == Doubt::disagreement || doubt_ == Doubt::robot_off);
+  const bool convinces = check.shift_sigmas < kWellWithin_sigmas || agreements_ >= kAgreementsOnEnd;
+  if (was_off && !convinces) return;
   state_ = PoseState::calibrated;
   passed_at_ = now;
 }
@@ -98,6 +107,7 @@ void PoseWatch::agree(Clock::time_point now) {
 void PoseWatch::disagree(Clock::time_point now) {
   if (disagreements_ == 0) disagrees_since_ = now;
   ++disagreements_;
+  agreements_ = 0;
   const bool lasts = now - disagrees_since_ >= settings_.least_drift;
   // Of a sensor that stands the robot's word is that joints, base or model are wrong.
   const bool stands = in_place_at_ && now - *in_place_at_ < kInPlace;
@@ -123,9 +133,11 @@ std::string PoseWatch::doubt() const {
       return "the sensor stands, but the robot is not where its joints and the pose put it: check joint "
              "zeros, the robot's base and the model; further checks follow at once";
     case Doubt::contested:
-      return "the robot has looked off in several postures, and the background does not tell whether it is "
-             "the robot's "
-             "model or the sensor; check joint zeros, the robot's base and the model, or calibrate again";
+      return "something speaks against the pose, and nothing settles it: one thing in view has shifted, or "
+             "the robot "
+             "has looked off in several postures; if the sensor may have been moved, calibrate again, else "
+             "check joint "
+             "zeros, the robot's base and the model, and let the robot work in view";
     case Doubt::restored:
       break;
   }

@@ -20,8 +20,8 @@ struct PoseWatchSettings {
 
 /// Decides what a sensor's pose is worth from the checks of it. Without I/O; not thread-safe.
 ///
-/// One check that disagrees is enough to serve the pose as valid no longer, and one that agrees brings it
-/// back. Only a row of disagreements calls it drifted, and that stays: that a pose which is off agrees now
+/// One check that disagrees is enough to serve the pose as valid no longer, and one that agrees well, or many
+/// that agree only just, brings it back. Only a row of disagreements calls it drifted, and that stays: that a pose which is off agrees now
 /// and then, in one posture or another, does not make it true. Only another pose, or the same one set again,
 /// ends it.
 class PoseWatch {
@@ -66,7 +66,7 @@ class PoseWatch {
   std::optional<api::Seconds> passed_check_age(Clock::time_point now) const;
 
  private:
-  void agree(Clock::time_point now);
+  void agree(const PoseCheck& check, Clock::time_point now);
   std::string doubt() const;
   std::string drift() const;
   void disagree(Clock::time_point now);
@@ -77,7 +77,7 @@ class PoseWatch {
   Doubt doubt_ = Doubt::restored;  // why it is unverified
   std::string objection_;
   bool is_contested_ = false;
-  int disagreements_ = 0;  // in a row
+  int disagreements_ = 0, agreements_ = 0;  // in a row
   Clock::time_point disagrees_since_;
   enum class Drift { background_moved, robot_off, stored };
   Drift drift_ = Drift::robot_off;  // why it has drifted

@@ -120,6 +120,13 @@ struct MovingBenchOptions : RandomScenes {
 };
 int run_moving(const MovingBenchOptions& options);
 
+struct KnockedOptions : RandomScenes {
+  std::uint64_t scenes = 30;
+  std::size_t postures = 6;
+  double shift_mm = 5, turn_mrad = 5;
+};
+int run_knocked(const KnockedOptions& options);
+
 struct ScenesOptions : RandomScenes {
   std::string level = "mixed";  ///< clean, cell, field, or all of them in turn
   std::uint64_t scenes = 10;

@@ -101,6 +101,17 @@ CLI::App* add_moving(CLI::App& app, MovingBenchOptions& moving) {
   return command;
 }
 
+CLI::App* add_knocked(CLI::App& app, KnockedOptions& knocked) {
+  CLI::App* command =
+      app.add_subcommand("knocked", "calibrate while the sensor is knocked between two postures");
+  add_random_scenes(*command, knocked);
+  command->add_option("--scenes", knocked.scenes)->check(CLI::Range(1, 1000000));
+  command->add_option("--postures", knocked.postures)->check(CLI::Range(2, 1000));
+  command->add_option("--shift-mm", knocked.shift_mm)->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--turn-mrad", knocked.turn_mrad)->check(CLI::Range(0.0, 1000.0));
+  return command;
+}
+
 CLI::App* add_register(CLI::App& app, RegisterOptions& clouds) {
   CLI::App* command = app.add_subcommand("register", "register two PLY clouds, starting as they lie");
   command->add_option("--source", clouds.source)->required();
@@ -206,6 +217,7 @@ int main(int argc, char** argv) {
                                       command(app, add_pairs, run_pairs),
                                       command(app, add_track, run_track),
                                       command(app, add_step, run_step),
+                                      command(app, add_knocked, run_knocked),
                                       command(app, add_moving, run_moving)};
   try {
     app.parse(argc, argv);

@@ -29,9 +29,14 @@ function kustomizationFaults(folder) {
     .flatMap((file) => yaml.loadAll(read(join(folder, file))));
   const images = new Set((kustomization.images ?? []).map((image) => image.name));
   for (const object of objects)
-    for (const container of object.spec?.template?.spec?.containers ?? [])
+    for (const container of containersOf(object))
       if (!container.image.includes(":") && !images.has(container.image)) faults.push(`${container.image} has no version`);
   return [...faults, ...objects.flatMap((object) => [...kubernetesFaults(object), ...podFaults(object, known)])];
+}
+
+function containersOf(object) {
+  const spec = object.spec?.template?.spec;
+  return [...(spec?.initContainers ?? []), ...(spec?.containers ?? [])];
 }
 
 function serviceFaults(name, services) {

@@ -39,6 +39,7 @@ for (const [what, file, from, to, told] of [
   ["a secret that is not made", `${SIDE}/collector.yaml`, "secretName: calibrd-collector", "secretName: other", "other"],
   ["a resource that is not there", `${SIDE}/kustomization.yaml`, "broker.yaml,", "brokers.yaml,", "brokers.yaml"],
   ["an image without a version", `${SIDE}/broker.yaml`, "eclipse-mosquitto:2.0", "eclipse-mosquitto", "eclipse-mosquitto"],
+  ["an image without a version that begins a pod", CELL, "      containers:", "        - { name: other, image: busybox }\n      containers:", "busybox"],
   ["a service with rights", "docker/compose.cell.yaml", "read_only: true", "privileged: true", "privileged"],
   ["a key that compose does not have", "docker/compose.cell.yaml", "stop_grace_period", "stop_grace_time", "stop_grace_time"],
 ])

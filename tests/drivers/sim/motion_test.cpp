@@ -12,7 +12,7 @@ namespace calibrd::sim {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kStart = 5 * kSecond;
+constexpr std::int64_t kBegin_ns = 5 * kSecond;
 
 Joints joints(double first, double second) { return {first, second}; }
 
@@ -42,22 +42,22 @@ Course course(const MotionPlan& plan, std::int64_t from, std::int64_t to) {
 
 MotionPlan visiting(Profile profile, double speed, double hold_s) {
   MotionPlan plan;
-  plan.place(joints(0.1, 0.2), kStart);
-  plan.visit(std::array{joints(1.1, 0.2), joints(0.4, -0.5)}, profile, speed, hold_s, kStart);
+  plan.place(joints(0.1, 0.2), kBegin_ns);
+  plan.visit(std::array{joints(1.1, 0.2), joints(0.4, -0.5)}, profile, speed, hold_s, kBegin_ns);
   return plan;
 }
 
 TEST(Motion, RestsWhereItIsPlaced) {
   MotionPlan plan;
-  plan.place(joints(0.3, -0.7), kStart);
-  EXPECT_EQ(plan.positions_at(kStart + 100 * kSecond), joints(0.3, -0.7));
-  EXPECT_EQ(plan.positions_at(kStart - kSecond), joints(0.3, -0.7));
+  plan.place(joints(0.3, -0.7), kBegin_ns);
+  EXPECT_EQ(plan.positions_at(kBegin_ns + 100 * kSecond), joints(0.3, -0.7));
+  EXPECT_EQ(plan.positions_at(kBegin_ns - kSecond), joints(0.3, -0.7));
 }
 
 TEST(Motion, VisitsEachPostureAndHoldsThere) {
   const MotionPlan plan = visiting(Profile::minimum_jerk, 0.5, 2.0);
   // 0.3 s to come to rest, then 1 rad at a peak of 0.5 rad/s: 1.875 / 0.5 = 3.75 s.
-  const std::int64_t arrived = kStart + kSecond * 3 / 10 + kSecond * 375 / 100;
+  const std::int64_t arrived = kBegin_ns + kSecond * 3 / 10 + kSecond * 375 / 100;
   EXPECT_NEAR(plan.positions_at(arrived)[0], 1.1, 1e-9);
   EXPECT_EQ(plan.positions_at(arrived + kSecond), joints(1.1, 0.2));
   EXPECT_LT(plan.positions_at(arrived + 3 * kSecond)[0], 1.0);
@@ -65,37 +65,38 @@ TEST(Motion, VisitsEachPostureAndHoldsThere) {
 
 TEST(Motion, ReachesTheStatedSpeedAndNoMore) {
   for (const Profile profile : {Profile::minimum_jerk, Profile::constant_speed}) {
-    const Course found = course(visiting(profile, 0.5, 0.5), kStart, kStart + 30 * kSecond);
+    const Course found = course(visiting(profile, 0.5, 0.5), kBegin_ns, kBegin_ns + 30 * kSecond);
     EXPECT_NEAR(found.top_speed, 0.5, 0.005);
   }
 }
 
 TEST(Motion, NeverJumpsInSpeed) {
-  EXPECT_LT(course(visiting(Profile::minimum_jerk, 0.5, 0.5), kStart, kStart + 30 * kSecond).top_acceleration,
-            1.0);
   EXPECT_LT(
-      course(visiting(Profile::constant_speed, 0.5, 0.0), kStart, kStart + 30 * kSecond).top_acceleration,
-      3.0);
+      course(visiting(Profile::minimum_jerk, 0.5, 0.5), kBegin_ns, kBegin_ns + 30 * kSecond).top_acceleration,
+      1.0);
+  EXPECT_LT(course(visiting(Profile::constant_speed, 0.5, 0.0), kBegin_ns, kBegin_ns + 30 * kSecond)
+                .top_acceleration,
+            3.0);
 }
 
 TEST(Motion, ConstantSpeedIsConstantMostOfTheWay) {
   const MotionPlan plan = visiting(Profile::constant_speed, 0.25, 0);
   for (double s = 1.0; s < 3.5; s += 0.1)
-    EXPECT_NEAR(plan.velocities_at(kStart + static_cast<std::int64_t>(s * kSecond))[0], 0.25, 1e-6) << s;
+    EXPECT_NEAR(plan.velocities_at(kBegin_ns + static_cast<std::int64_t>(s * kSecond))[0], 0.25, 1e-6) << s;
 }
 
 TEST(Motion, LoopsForEver) {
   const MotionPlan plan = visiting(Profile::minimum_jerk, 0.5, 1.0);
   // From the first loop on: 0.7 rad there, 0.7 rad back, two holds.
   const auto cycle = static_cast<std::int64_t>((2 * 0.7 * 1.875 / 0.5 + 2.0) * kSecond);
-  const std::int64_t t = kStart + 20 * kSecond;
+  const std::int64_t t = kBegin_ns + 20 * kSecond;
   for (std::size_t j = 0; j < 2; ++j)
     EXPECT_NEAR(plan.positions_at(t)[j], plan.positions_at(t + 1000 * cycle)[j], 1e-6);
 }
 
 TEST(Motion, HoldStopsSmoothlyAndResumeGoesOn) {
   MotionPlan plan = visiting(Profile::minimum_jerk, 0.5, 1.0);
-  const std::int64_t moving = kStart + 2 * kSecond;
+  const std::int64_t moving = kBegin_ns + 2 * kSecond;
   const Joints without = plan.positions_at(moving);
   plan.set_rate(0, moving);
   EXPECT_EQ(plan.positions_at(moving), without);
@@ -109,7 +110,7 @@ TEST(Motion, HoldStopsSmoothlyAndResumeGoesOn) {
 
 TEST(Motion, NewProgramStartsFromWhereTheRobotIs) {
   MotionPlan plan = visiting(Profile::minimum_jerk, 0.5, 1.0);
-  const std::int64_t moving = kStart + 2 * kSecond;
+  const std::int64_t moving = kBegin_ns + 2 * kSecond;
   plan.visit(std::vector{joints(-1, -1)}, Profile::minimum_jerk, 0.4, 1.0, moving);
   plan.visit(std::vector{joints(-1, 1)}, Profile::minimum_jerk, 0.4, 1.0, moving + kSecond / 10);
   const Course found = course(plan, moving - kSecond, moving + 20 * kSecond);

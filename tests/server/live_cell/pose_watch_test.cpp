@@ -94,6 +94,18 @@ TEST_F(Watch, FalseAlarmIsOverWithTheNextAgreement) {
   EXPECT_TRUE(watch_.is_valid(at(1100ms)));
 }
 
+TEST_F(Watch, APoseThatIsOffByAsMuchAsTheLimitDoesNotFlap) {
+  PoseCheck just{true, true, 0.9, 0.002, 4000};
+  just.shift_sigmas = 3.8;
+  watch_.set_fresh(at(0ms));
+  for (int i = 0; i < 100; ++i) {
+    watch_.on_check(i % 10 == 0 ? kDisagrees : just, at(1s + i * 100ms));
+    ASSERT_FALSE(watch_.is_valid(at(1s + i * 100ms))) << i;
+  }
+  for (int i = 0; i < 20; ++i) watch_.on_check(just, at(11s + i * 100ms));
+  EXPECT_TRUE(watch_.is_valid(at(13s))) << "so many on end are no chance";
+}
+
 TEST_F(Watch, DriftedPoseStaysSoHoweverOftenChecksAgreeUntilItIsSetAgain) {
   watch_.set_fresh(at(0ms));
   drift();
