@@ -7,6 +7,7 @@
 #   scripts/live.sh load [SECONDS [SENSORS...]]           what watching 1, 2, 4 and 8 sensors at 30 Hz costs; 6 minutes
 #   scripts/live.sh events [--rounds N] [--seed S] [--event VERDICT] [--knocks-first]
 #                                                         what is staged against what is said; 5 minutes a round
+#   scripts/live.sh slides [MOVES [SEED]]                small pure slides and turns: for how long a wrong pose is served
 #   scripts/live.sh hour [HOURS [SEED]]                   false alarms: nobody moves the sensor, everything else happens
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,6 +16,6 @@ build=$PWD/build/${CALIBRD_PRESET:-release}
 [ -x "$build/bin/calibrd" ] || { echo "live.sh: $build/bin/calibrd is missing; run scripts/test.sh first" >&2 && exit 2; }
 what=${1:-}
 case $what in
-  healing | load | events | hour) shift && CALIBRD_BUILD=$build exec python3 -B "tests/live/$what.py" "$@" ;;
+  healing | load | events | slides | hour) shift && CALIBRD_BUILD=$build exec python3 -B "tests/live/$what.py" "$@" ;;
   *) echo "live.sh: unknown figure '$what'; see the head of scripts/live.sh" >&2 && exit 2 ;;
 esac

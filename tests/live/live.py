@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "e2e"))
-from cell import SENSOR, Daemon, Simulator, wait_until  # noqa: E402, F401
+from cell import SENSOR, Daemon, Simulator, call, wait_until  # noqa: E402, F401
 
 #: Minutes at a real cell are shortened: the robot hurries from posture to posture and stays 0.8 s at each.
 WORKING = {"mode": "run", "seed": 11, "count": 12, "speed_rad_s": 2.0, "hold_s": 0.8}

@@ -32,7 +32,7 @@ inline Bytes topic(simple_message::Body body, simple_message::WireFormat format 
 }
 inline Bytes joints(double first) { return topic(JointFeedback{0, kValidPositions, 0, {first}, {}, {}}); }
 inline Bytes status() { return topic(RobotStatus{1, 0, 0, 0, 0, 2, 1}); }
-inline Bytes cycle() {
+inline Bytes state_cycle() {
   Bytes bytes = joints(0.1);
   const Bytes more = status();
   bytes.insert(bytes.end(), more.begin(), more.end());
@@ -84,7 +84,7 @@ class LinkMachineTest : public testing::Test {
   }
   void stream_for(std::chrono::milliseconds time) {
     for (const auto end = now_ + time; now_ < end; pass(std::chrono::milliseconds(25)))
-      receive(wire::cycle());
+      receive(wire::state_cycle());
   }
   /// How long the machine pauses before it asks for the next connection.
   std::chrono::milliseconds pause() {

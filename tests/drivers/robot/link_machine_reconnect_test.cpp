@@ -11,7 +11,7 @@ using namespace wire;
 
 TEST_F(LinkMachineTest, SilenceIsReportedThenEndsTheConnection) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   pass(249ms);
   EXPECT_EQ(state(), State::streaming);
   pass(1ms);
@@ -94,7 +94,7 @@ TEST_F(LinkMachineTest, RubbishAfterEveryConnectIsNotHammered) {
   obey(machine_.start(now_));
   for (const auto expected : {50ms, 100ms, 200ms, 400ms, 500ms, 500ms}) {
     obey(machine_.on_connected(now_));
-    receive(cycle());
+    receive(state_cycle());
     receive(Bytes(16));
     EXPECT_TRUE(asked_to<link_step::Close>());
     EXPECT_EQ(pause(), expected);
@@ -146,9 +146,9 @@ TEST_F(LinkMachineTest, ARebootingControllerIsNoFight) {
 
 TEST_F(LinkMachineTest, AHeldUpProcessDropsJointsOfUnknownAge) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   now_ += 10s;  // no tick either: the process did not run
-  receive(cycle());
+  receive(state_cycle());
   EXPECT_EQ(joints_.size(), 1u);
   EXPECT_TRUE(asked_to<link_step::Close>());
   EXPECT_TRUE(reason_is(RobotLinkError::held_up));
@@ -156,7 +156,7 @@ TEST_F(LinkMachineTest, AHeldUpProcessDropsJointsOfUnknownAge) {
 
 TEST_F(LinkMachineTest, AHeldUpProcessDoesNotBlameTheController) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   now_ += 10s;
   obey(machine_.on_tick(now_));
   EXPECT_TRUE(asked_to<link_step::Close>());
@@ -165,7 +165,7 @@ TEST_F(LinkMachineTest, AHeldUpProcessDoesNotBlameTheController) {
 
 TEST_F(LinkMachineTest, ANewConnectionDoesNotLiveOnOldJoints) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   obey(machine_.on_closed({}, now_));
   EXPECT_FALSE(machine_.health().status_fresh);
   EXPECT_EQ(pause(), 50ms);
@@ -184,7 +184,7 @@ TEST_F(LinkMachineTest, KeepsTheWordsOfAnUnexplainedFailure) {
 TEST_F(LinkMachineTest, IgnoresLateEventsOfAnEndedConnection) {
   start_and_connect();
   obey(machine_.on_closed({}, now_));
-  receive(cycle());
+  receive(state_cycle());
   obey(machine_.on_closed({}, now_));
   obey(machine_.on_connected(now_));
   EXPECT_TRUE(joints_.empty());
@@ -198,7 +198,7 @@ TEST_F(LinkMachineTest, StopClosesAndIsFinal) {
   EXPECT_TRUE(reason_is(RobotLinkError::stopped));
   obey(machine_.stop());
   EXPECT_TRUE(last_.empty());
-  receive(cycle());
+  receive(state_cycle());
   obey(machine_.on_tick(now_ + 60s));
   EXPECT_TRUE(last_.empty());
   EXPECT_TRUE(joints_.empty());

@@ -22,7 +22,7 @@ TEST_F(LinkMachineTest, ConnectsWhenStartedAndOnlyOnce) {
 
 TEST_F(LinkMachineTest, StreamsFromTheFirstJointsOn) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   EXPECT_EQ(state(), State::streaming);
   EXPECT_EQ(machine_.health().reason, "");
   EXPECT_TRUE(machine_.health().status_fresh);
@@ -84,7 +84,7 @@ TEST_F(LinkMachineTest, OldJointsDeliveredLateAreStaleAtOnce) {
 
 TEST_F(LinkMachineTest, StatusAloneMakesJointsStaleAfterATimeOut) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   for (int i = 0; i < 9; ++i) {
     pass(25ms);
     receive(status());
@@ -110,7 +110,7 @@ TEST_F(LinkMachineTest, StatusAloneNeverMakesItReconnect) {
 
 TEST_F(LinkMachineTest, JointsAloneMakeTheStatusStale) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   for (int i = 0; i < 10; ++i) {
     pass(25ms);
     receive(joints(0.1));
@@ -132,7 +132,7 @@ TEST_F(LinkMachineTest, NamesTheByteOrderToConfigureUntilTheStreamIsRead) {
   EXPECT_EQ(machine_.health().reason, expected) << "while it waits";
   obey(machine_.on_connected(now_));
   EXPECT_EQ(machine_.health().reason, expected) << "while nothing has come";
-  receive(cycle());
+  receive(state_cycle());
   EXPECT_EQ(state(), State::streaming);
   EXPECT_EQ(machine_.health().reason, "");
 }
@@ -170,10 +170,10 @@ TEST_F(LinkMachineTest, ReportsHealthOnChangesOnly) {
 
 TEST_F(LinkMachineTest, DoesNotArmTheTimerWithEveryMessage) {
   start_and_connect();
-  receive(cycle());
+  receive(state_cycle());
   int armed = 0;
   for (int i = 0; i < 5; ++i) {
-    receive(cycle());
+    receive(state_cycle());
     armed += asked_to<link_step::ArmTimer>();
     pass(25ms);
   }
