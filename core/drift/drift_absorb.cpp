@@ -77,7 +77,7 @@ void DriftWatch::absorb_what_was_pushed(double now_s) {
   }
   if (!take(chosen)) return;
   followed_ += dispute_.turn_shift();
-  dispute_.settle();
+  dispute_.settle(now_s);
 }
 
 /// A table with all that stands on it: what the robot denied to be the sensor's move is the background now.

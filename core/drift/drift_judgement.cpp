@@ -13,7 +13,7 @@ constexpr double kInFront_s = 0.5;  // a verdict outlives what it speaks of by s
 constexpr double kRobotHolds_s = 10;
 /// A person who passes is no reason to doubt; a lens that is covered is: nobody passes so near.
 constexpr double kOutOfSight_s = 2, kDark_s = 0.5;
-constexpr double kDisputed_s = 1;  // unsettled for so long: time for the robot to deny it
+constexpr double kDisputed_s = 0.6;  // unsettled for so long: time for the robot to deny it
 
 }  // namespace
 

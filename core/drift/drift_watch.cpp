@@ -132,7 +132,7 @@ void DriftWatch::test(const BackgroundObservation& observation) {
   if (is_disputed && observation.unsupported)
     dispute_.add(*observation.unsupported, innovation_->turn_shift, frame_s_);
   else
-    dispute_.add_none(frame_s_);
+    dispute_.add_none(innovation_->turn_shift, frame_s_);
   count_quiet();
   last_covariance_ = innovation_->covariance;
   report_.turn_sigma_rad = std::sqrt(innovation_->covariance.topLeftCorner<3, 3>().trace());

@@ -8,7 +8,8 @@ namespace calibrd {
 namespace {
 
 constexpr double kNewest = 1.0 / 30;  // weight of a frame in the mean
-constexpr double kEnds_s = 1;
+/// Noise alone looks like it in one frame of twenty: most of the last frames must, and few end it.
+constexpr double kOfFrames = 0.1, kOpens = 0.5, kEnds = 0.2;
 constexpr double kSame_m = 1e-3, kSame_rad = 1e-3;
 /// What one posture can say at most, and all together; what denies, and what several must say to affirm.
 constexpr double kMostPerPosture = 4, kMostHeard = 12, kDenied = 2, kAffirmed = 9;
@@ -25,15 +26,19 @@ bool is_same(const Vector6d& a, const Vector6d& b) {
 
 }  // namespace
 
+void ShiftDispute::follow(const Vector6d& turn_shift) {
+  ++frames_;
+  turn_shift_ += std::max(kNewest, 1.0 / frames_) * (turn_shift - turn_shift_);
+}
+
 void ShiftDispute::add(const CellWindow& window, const Vector6d& turn_shift, double now_s) {
+  if (share_ < kEnds && !is_open()) frames_ = 0;
+  share_ += kOfFrames * (1 - share_);
   window_ = window;
-  if (!is_open()) {
-    if (now_s - seen_s_ > kSameDispute_s) heard_ = {};
-    since_s_ = now_s;
-    turn_shift_ = turn_shift;
-  }
-  seen_s_ = now_s;
-  turn_shift_ += kNewest * (turn_shift - turn_shift_);
+  follow(turn_shift);
+  if (is_open() || share_ < kOpens) return;
+  if (now_s - ended_s_ > kSameDispute_s) heard_ = {};
+  since_s_ = now_s;
 }
 
 double ShiftDispute::voice() const { return std::clamp(heard_.mean, -kMostPerPosture, kMostPerPosture); }
@@ -63,8 +68,10 @@ bool ShiftDispute::is_affirmed() const {
          heard_.newest_s - heard_.since_s >= kLeastAffirmed_s;
 }
 
-void ShiftDispute::add_none(double now_s) {
-  if (now_s - seen_s_ > kEnds_s) since_s_ = -1;
+void ShiftDispute::add_none(const Vector6d& turn_shift, double now_s) {
+  share_ -= kOfFrames * share_;
+  follow(turn_shift);
+  if (share_ < kEnds && is_open()) settle(now_s);
 }
 
 }  // namespace calibrd

@@ -14,8 +14,8 @@ class ShiftDispute {
   void reset() { *this = ShiftDispute(); }
   /// A frame shows it: in `window`, by `turn_shift` of the middle of the background.
   void add(const CellWindow& window, const Vector6d& turn_shift, double now_s);
-  /// A frame does not. A few of these end nothing.
-  void add_none(double now_s);
+  /// A frame does not: it shows `turn_shift` within its noise. A few of these end nothing.
+  void add_none(const Vector6d& turn_shift, double now_s);
   /// By how much (−2 log likelihood) a comparison with the robot, in the `posture`-th posture that was looked
   /// at, speaks for a sensor that stands rather than for one that has slid so. What was said counts while the
   /// shift stays what it is.
@@ -25,7 +25,10 @@ class ShiftDispute {
   /// ... or, in several postures, that it has slid.
   bool is_affirmed() const;
   /// It is known what it was.
-  void settle() { since_s_ = -1; }
+  void settle(double now_s) {
+    since_s_ = -1;
+    ended_s_ = now_s;
+  }
 
   bool is_open() const { return since_s_ >= 0; }
   double since_s() const { return since_s_; }
@@ -40,10 +43,13 @@ class ShiftDispute {
     double mean = 0, before = 0;  // of this posture, and all of those before
     double since_s = 0, newest_s = 0;
   };
+  void follow(const Vector6d& turn_shift);
   double voice() const;
   double heard() const { return heard_.before + voice(); }
 
-  double since_s_ = -1, seen_s_ = -1e9;
+  double share_ = 0;  // of the last frames, that show it
+  int frames_ = 0;    // that turn_shift_ is the mean of
+  double since_s_ = -1, ended_s_ = -1e9;
   CellWindow window_;
   Vector6d turn_shift_ = Vector6d::Zero();
   Heard heard_;

@@ -52,6 +52,19 @@ class Calibration(CellTest):
         self.assertLess(mm, MAX_MM)
         self.assertLess(mrad, MAX_MRAD)
 
+    def test_a_sensor_that_is_knocked_between_two_postures_gets_no_pose(self):
+        simulator = self.simulate()
+        simulator.hurry()
+        daemon = self.serve(simulator).wait_ready()
+        location = daemon.start_calibration(postures=6)
+        wait_until("half of the postures are there", lambda: daemon.json(location)["postures_seen"] >= 3, period_s=0.01)
+        simulator.tell("POST", f"/sensors/{SENSOR}/knock", shift_m=[0.003, 0.003, 0.003], turn_deg=[0, 0, 0])
+        job = daemon.wait_calibration(location)
+        self.assertEqual(job["status"], "failed", job)
+        self.assertIn("sensor_moved_meanwhile", [reason["code"] for reason in job["result"]["reasons"]], job)
+        self.assertEqual(daemon.pose()["state"], "uncalibrated")
+        self.assertEqual(daemon.calibrate(postures=6)["status"], "succeeded", "once it stands")
+
     def test_a_calibration_can_be_cancelled(self):
         simulator = self.simulate()
         daemon = self.serve(simulator).wait_ready()

@@ -8,7 +8,7 @@ By turns a slide in a direction drawn at random, one along the wall (which few t
 The sensor is watched for 10 s, then put back, and its calibration activated again. JSON lines, then a table.
 
 usage: slides.py [MOVES [SEED]] [--require]      default: 24 moves; --require: exit status 1 when a wrong pose was served for
-                                                 longer than 2 s in all"""
+                                                 longer than 1.5 s in all"""
 
 import math
 import random
@@ -20,7 +20,7 @@ from healing import direction
 from live import SENSOR, WORKING, call, drift, known, machine, say, settle, table, working_cell
 from poses import difference
 
-WATCHED_S, PERIOD_S, MOST_S = 10.0, 0.03, 2.0
+WATCHED_S, PERIOD_S, MOST_S = 10.0, 0.03, 1.5
 WRONG_MM, WRONG_MRAD = 3.0, 3.0
 KNOCK = f"/sensors/{SENSOR}/knock"
 KINDS = ("slide", "slide along the wall", "turn")
