@@ -18,15 +18,13 @@ constexpr auto kInverse = Reference::inverse;
 
 constexpr const char* kQuaternion =
     "unit quaternion of R, x y z w (w is the real part); w >= 0, and at w = 0 the first of x, y, z that is "
-    "not 0 "
-    "is positive";
+    "not 0 is positive";
 constexpr const char* kVector =
     "rotation vector of R: axis times angle, angle 0 to pi; at pi the first of its numbers that is not 0 is "
     "positive";
 constexpr const char* kRos =
     "unit quaternion of R, x y z w (w is the real part), w >= 0; or R = Rz(yaw) Ry(pitch) Rx(roll): about "
-    "fixed "
-    "x, y, z in this order";
+    "fixed x, y, z in this order";
 constexpr const char* kRosLock = "at pitch = ±pi/2 roll is 0";
 constexpr const char* kTf2Source =
     "https://github.com/ros2/geometry2 tf2_ros/src/static_transform_broadcaster_program.cpp; frames: REP "

@@ -10,8 +10,7 @@ namespace {
 /// data: and blob:.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src "
-    "'self'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 constexpr const char* kNotice =
     "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>calibrd</title>\n"

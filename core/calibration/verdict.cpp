@@ -84,8 +84,7 @@ class Judge {
     if (result_.coverage >= settings_.least_coverage && result_.coverage < settings_.min_coverage)
       doubt("low_coverage", "only " + percent(result_.coverage) +
                                 " of the robot's visible surface was found in the measurement; clear what "
-                                "stands in front of the robot "
-                                "or add postures");
+                                "stands in front of the robot or add postures");
     if (r.last_step_sigmas > settings_.max_last_step_sigmas)
       doubt("not_converged", "the solution still moved when the iterations ended");
     if (result_.sigma_position_m > settings_.max_sigma_position_m)

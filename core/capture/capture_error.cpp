@@ -30,28 +30,24 @@ class CaptureErrorCategory final : public std::error_category {
         return "the recording holds no frame; record at least one posture";
       case CaptureError::urdf_not_found:
         return "the robot's URDF was not found in the capture nor in any --models folder; add the folder "
-               "that holds "
-               "it with --models";
+               "that holds it with --models";
       case CaptureError::bad_png:
         return "this is not a readable PNG image; record the frame again or remove it from capture.json";
       case CaptureError::wrong_image_size:
         return "the image is not of the size that sensor.width and sensor.height state; depth and image must "
-               "share "
-               "the sensor's pixel grid";
+               "share the sensor's pixel grid";
       case CaptureError::wrong_bit_depth:
         return "a depth image must be a 16-bit single-channel PNG (an 8-bit one has lost the depth); export "
                "it again";
       case CaptureError::wrong_joint_count:
         return "joint_positions_rad must hold one finite number for each of robot.joint_names, in that "
-               "order; mend or "
-               "remove the frame";
+               "order; mend or remove the frame";
       case CaptureError::unknown_joint:
         return "robot.joint_names names a joint that the robot model does not have; use the URDF's joint "
                "names";
       case CaptureError::missing_joint:
         return "the robot model has a joint that robot.joint_names leaves out; record a position for every "
-               "movable "
-               "joint";
+               "movable joint";
       case CaptureError::duplicate_joint:
         return "robot.joint_names names this joint twice; name each joint once";
       case CaptureError::folder_not_empty:
@@ -60,8 +56,7 @@ class CaptureErrorCategory final : public std::error_category {
         return "writing failed; check permissions and free space";
       case CaptureError::bad_pose_file:
         return "not a pose; give a JSON file that holds \"T_base_sensor\" (4x4, 3x4 or 12 row-major numbers, "
-               "a proper "
-               "rotation, metres) or x,y,z,qx,qy,qz,qw";
+               "a proper rotation, metres) or x,y,z,qx,qy,qz,qw";
     }
     return "unknown capture error";
   }

@@ -36,16 +36,15 @@ const char* text_of(DriftVerdict verdict) {
       return "something in the cell was moved, brought or taken away; the sensor stands";
     case DriftVerdict::robot_model_wrong:
       return "the sensor stands, but the robot is not where its joints say: check joint zeros, the tool, the "
-             "robot's "
-             "base and the model";
+             "robot's base and the model";
     case DriftVerdict::depth_bias_changed:
       return "the sensor stands, but its range reads otherwise than when it was calibrated, as while it "
-             "warms up; "
-             "calibrate again once it is warm if depths are used as they come";
+             "warms up; calibrate again once it is warm if depths are used as they come";
     case DriftVerdict::no_evidence:
       break;
   }
-  return "nothing is in view that could tell: neither robot nor known background, or the sensor is dark";
+  return "nothing in view tells whether the sensor stands: neither robot nor enough of the known background "
+         "is seen, the sensor is dark, or one thing alone has shifted";
 }
 
 }  // namespace calibrd

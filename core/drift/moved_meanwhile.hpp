@@ -7,6 +7,7 @@
 
 #include "core/calibration/check_pose.hpp"
 #include "core/drift/background_map.hpp"
+#include "core/drift/background_match.hpp"
 
 namespace calibrd {
 
@@ -21,7 +22,7 @@ struct MovedMeanwhile {
 struct SplitOfViews {
   std::size_t before = 0;                  ///< the last view before it
   double squares = 0;                      ///< of the shift, against its covariance: χ² of 6
-  Vector6d turn_shift = Vector6d::Zero();  ///< rad and m, base axes, of the robot
+  Vector6d turn_shift = Vector6d::Zero();  ///< rad and m, base axes
 };
 
 /// Views of a sensor that was knocked while they were collected fit one pose between the two, with residuals
@@ -43,7 +44,11 @@ class ViewsInOrder {
                            const DepthCorrection& correction);
 
  private:
+  std::optional<BackgroundObservation> match(const View& remembered, const View& now,
+                                             const Pose& T_base_sensor);
+
   CameraModel camera_;
+  Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();  // of what was remembered last
   RobotMask robot_;
   PoseChecker checker_;
 };

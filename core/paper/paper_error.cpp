@@ -14,14 +14,12 @@ class PaperErrorCategory final : public std::error_category {
         return "no measured points in the region of interest; is the guess right, or the region too small?";
       case PaperError::pcl_missing:
         return "the paper's method needs this shared object, and PCL's libraries that it is linked to; "
-               "install or "
-               "build it beside the programs, or use the method full";
+               "install or build it beside the programs, or use the method full";
       case PaperError::pcl_failed:
         return "PCL's ICP found too few correspondences; give a better guess";
       case PaperError::bad_region:
         return "a region of interest is six numbers between commas, x0,y0,z0,x1,y1,z1 in the sensor frame "
-               "(m), "
-               "the first three smaller than the last three";
+               "(m), the first three smaller than the last three";
       case PaperError::other_method:
         return "this belongs to the paper's method; give --method paper as well, or leave it out";
     }

@@ -21,8 +21,7 @@ const char* text(JointMappingError code) {
       return "the controller sends no axis of this index; indices start at 0";
     case JointMappingError::axis_twice:
       return "two joints are driven by the same controller axis; correct one of them (an axis that acts on a "
-             "second "
-             "joint belongs in that joint's coupling)";
+             "second joint belongs in that joint's coupling)";
     case JointMappingError::bad_number:
       return "not usable; sign must be 1 or -1, scale greater than zero, offset and coupling factors finite";
     case JointMappingError::too_few_values:
@@ -32,8 +31,7 @@ const char* text(JointMappingError code) {
       return "this preset is for robots of 7 movable joints; map the joints one by one instead";
     case JointMappingError::pendant_order:
       return "this is the order of the teach pendant (S L U R B T E), but the wire carries S L E U R B T; "
-             "list the "
-             "joints from base to tool, the elbow axis E third";
+             "list the joints from base to tool, the elbow axis E third";
     case JointMappingError::not_invertible:
       return "its controller axis is scaled or coupled, so the robot cannot be commanded; switch "
              "motion.enabled off";

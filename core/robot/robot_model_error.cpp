@@ -20,8 +20,7 @@ const char* text(RobotModelError code) {
       return "the URDF has no such link; use one of its link names";
     case RobotModelError::unsupported_joint:
       return "joint type not supported; use revolute, continuous, prismatic or fixed (for a robot on a "
-             "track, one "
-             "prismatic joint)";
+             "track, one prismatic joint)";
     case RobotModelError::bad_axis:
       return "the joint axis has no direction; give <axis xyz=\"…\"/> a vector other than zero";
     case RobotModelError::bad_number:

@@ -59,19 +59,16 @@ constexpr std::pair<RobotLinkError, std::string_view> kMessages[] = {
      "reconnecting. Give calibrd more processor time"},
     {out_of_resources,
      "this computer had no memory or no thread left for the link; reconnecting. Look for what uses them up, "
-     "or "
-     "raise the limits of calibrd"},
+     "or raise the limits of calibrd"},
 
     {joints_missing,
      "status arrives but no joint positions: the controller cannot read its encoders. Check its alarms and "
-     "that the "
-     "robot's group is enabled"},
+     "that the robot's group is enabled"},
     {only_other_groups, "set robot.group to the group of the robot to be calibrated against"},
     {no_positions, "joint messages come without positions: check the version of the controller's driver"},
     {outside_joint_range,
      "outside the range of this joint; the message was dropped. Check the joint order, the joint mapping and "
-     "the "
-     "model's limits"},
+     "the model's limits"},
 };
 
 class Category : public std::error_category {

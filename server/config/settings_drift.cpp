@@ -26,12 +26,10 @@ void declare_drift(std::vector<Setting>& table) {
       "Postures of the first two, quick attempts, at most. Later ones collect calibration.postures.");
   key("healing_patience", &DriftConfig::healing_patience, duration(0ms, 10min), "",
       "A quick attempt begins after this time with the postures there are, if there are two; with one after "
-      "two and "
-      "a half times as long.");
+      "two and a half times as long.");
   key("healing_cooldown", &DriftConfig::healing_cooldown, duration(100ms, 24h), "",
       "Pause after failed attempts, before a quick result is made better, and for a sensor that moves for "
-      "the fifth "
-      "time within ten minutes; doubles from one to the next up to ten minutes.");
+      "the fifth time within ten minutes; doubles from one to the next up to ten minutes.");
 }
 
 }  // namespace calibrd

@@ -41,8 +41,7 @@ void declare_robot(std::vector<Setting>& table) {
       "Where each joint can be, [lower, upper] in wire order; a message outside is dropped.");
   key("trust_in_motion", &RobotConfig::trust_in_motion, flag(), "",
       "A robot whose controller says that it is in motion gives no view of a still robot, and joints that "
-      "repeat "
-      "meanwhile are frozen. false: for controllers that say so while the robot stands.");
+      "repeat meanwhile are frozen. false: for controllers that say so while the robot stands.");
 }
 
 void declare_link(std::vector<Setting>& table) {
@@ -130,8 +129,7 @@ void declare_sensors(std::vector<Setting>& table) {
   key("fy", camera(&CameraModel::fy), positive_real(), "px", "Focal length.").required = true;
   key("cx", camera(&CameraModel::cx), positive_real(), "px",
       "Principal point; the centre of the first pixel is 0. Taken as the centre of the image it moved the "
-      "pose "
-      "by up to 29 mm, unseen.")
+      "pose by up to 29 mm, unseen.")
       .required = true;
   key("cy", camera(&CameraModel::cy), positive_real(), "px", "Principal point.").required = true;
   key("distortion", camera(&CameraModel::distortion), five_reals(), "",
@@ -147,8 +145,7 @@ void declare_sensors_time_and_place(std::vector<Setting>& table) {
       "From exposure to the arrival of a frame; it is taken off the frame's stamp.");
   key("time_offset", &SensorConfig::time_offset, one_of({"estimate", "off"}), "",
       "estimate: how much later frames are stamped than joints, beyond both latencies, is found from the "
-      "robot's "
-      "motion once the sensor is calibrated, and applied. off: the latencies are taken for true.");
+      "robot's motion once the sensor is calibrated, and applied. off: the latencies are taken for true.");
   key("guess", &SensorConfig::guess_T_base_sensor, optional_pose(), "m",
       "Rough T_base_sensor; only makes the first calibration faster.");
 }
@@ -202,8 +199,7 @@ void declare_calibration(std::vector<Setting>& table) {
       "A calibration that has not seen its postures after this time fails.");
   key("views", &CalibrationConfig::views, one_of({"still", "still_or_timed"}), "",
       "still_or_timed: frames of a moving robot are used as well, where the time offset is known so well "
-      "that no "
-      "point of it is farther than 0.3 mm from where the joints put it.");
+      "that no point of it is farther than 0.3 mm from where the joints put it.");
 }
 
 void declare_rest(std::vector<Setting>& table) {

@@ -122,8 +122,7 @@ std::string PoseWatch::doubt() const {
   switch (doubt_) {
     case Doubt::sensor_lost:
       return "the sensor was lost, sends nothing new, or has moved since the pose was found; the pose is "
-             "checked "
-             "when frames come and the robot holds still in view";
+             "checked when frames come and the robot holds still in view";
     case Doubt::view_lost:
       return "for a while the sensor has seen neither the background nor the robot where the pose says; "
              "take away what stands before it, or, if it was moved, calibrate again";
@@ -134,10 +133,8 @@ std::string PoseWatch::doubt() const {
              "zeros, the robot's base and the model; further checks follow at once";
     case Doubt::contested:
       return "something speaks against the pose, and nothing settles it: one thing in view has shifted, or "
-             "the robot "
-             "has looked off in several postures; if the sensor may have been moved, calibrate again, else "
-             "check joint "
-             "zeros, the robot's base and the model, and let the robot work in view";
+             "the robot has looked off in several postures; if the sensor may have been moved, calibrate "
+             "again, else check joint zeros, the robot's base and the model, and let the robot work in view";
     case Doubt::restored:
       break;
   }
@@ -149,8 +146,7 @@ std::string PoseWatch::drift() const {
   switch (drift_) {
     case Drift::background_moved:
       return "the sensor has moved: what stands around the robot, or the robot itself, is no longer where "
-             "the "
-             "pose puts it; calibrate again, or wait for it where drift.healing does so";
+             "the pose puts it; calibrate again, or wait for it where drift.healing does so";
     case Drift::robot_off:
       return "the sensor does not see the robot where the pose says; calibrate again, or, if something only "
              "stood before it, activate the calibration again";

@@ -44,8 +44,7 @@ std::string disagreement(const CrossCheck& check, const std::string& sensor, con
   return "what \"" + sensor + "\" and \"" + other +
          "\" both see of the cell does not lie at the same place (" + figures.data() +
          "): one of the poses is wrong, or much was moved between their calibrations; calibrate both from "
-         "the "
-         "same postures";
+         "the same postures";
 }
 
 }  // namespace

@@ -95,8 +95,7 @@ const char* reason_of(FrameVerdict verdict) {
              "delivers";
     case FrameVerdict::joints_frozen:
       return "the controller's status goes on, its joint positions do not: they stopped, or repeat while it "
-             "says "
-             "that the robot moves; look at the controller (robot.trust_in_motion, when it is mistaken)";
+             "says that the robot moves; look at the controller (robot.trust_in_motion, when it is mistaken)";
     case FrameVerdict::timed:
       return "";
   }

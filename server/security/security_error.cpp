@@ -31,8 +31,7 @@ const char* text(SecurityError code) {
     case SecurityError::open_without_tokens:
       return "whoever reaches this address could use the daemon; set server.tokens_file and make tokens with "
              "`calibrd token create`, or set server.tls.client_ca, or listen on 127.0.0.1, or, where every "
-             "machine that reaches it is "
-             "trusted, set server.allow_unauthenticated = true";
+             "machine that reaches it is trusted, set server.allow_unauthenticated = true";
     case SecurityError::no_such_user:
       return "there is no such user; correct server.run_as, or make the user";
     case SecurityError::cannot_become:

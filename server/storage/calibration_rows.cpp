@@ -19,11 +19,9 @@ using std::chrono::milliseconds;
 
 constexpr const char* kSelect =
     "SELECT c.id, c.sensor_id, c.created_ms, c.method, c.postures, c.activate, r.finished_ms, r.status, "
-    "r.message, "
-    "r.postures_seen, r.result, "
-    "c.id = (SELECT a.calibration_id FROM activations a WHERE a.sensor_id = c.sensor_id ORDER BY a.number "
-    "DESC LIMIT 1) "
-    "FROM calibrations c LEFT JOIN results r ON r.calibration_id = c.id ";
+    "r.message, r.postures_seen, r.result, c.id = (SELECT a.calibration_id FROM activations a WHERE "
+    "a.sensor_id = c.sensor_id ORDER BY a.number DESC LIMIT 1) FROM calibrations c LEFT JOIN results r ON "
+    "r.calibration_id = c.id ";
 
 api::SystemTime time_of(std::int64_t ms) { return api::SystemTime(milliseconds(ms)); }
 

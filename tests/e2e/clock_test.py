@@ -12,7 +12,7 @@ import time
 import unittest
 from pathlib import Path
 
-from cell import SENSOR, CellTest, Daemon, wait_until
+from cell import SENSOR, CellTest, Daemon, call, wait_until
 from holdings import Asking
 
 POSE = f"/api/v1/sensors/{SENSOR}/pose"
@@ -164,8 +164,21 @@ class Stopped(ClockTest):
 
     def test_a_sensor_that_was_knocked_meanwhile_is_not_called_good(self):
         daemon = self.calibrated("drift.healing=off")
+        calibration = daemon.pose()["calibration"]
+        for _ in range(3):  # by chance a frame of before the stop is compared in time, or not
+            self.assertLess(self.served_after_a_knock(daemon), 0.3)
+            self.simulator.tell("POST", f"/sensors/{SENSOR}/knock", **self.knock(-1))
+            call(daemon.port, "POST", f"/api/v1/calibrations/{calibration}/activate", {})
+            wait_until("the pose is valid again", lambda: daemon.pose()["valid"])
+
+    @staticmethod
+    def knock(sign: int) -> dict:
+        return {"shift_m": [0.0, sign * 0.006, sign * 0.004], "turn_deg": [0.0, 0.0, sign * 0.4]}
+
+    def served_after_a_knock(self, daemon: Daemon) -> float:
+        """For how long after a stop the pose of before the knock was served."""
         stop(daemon)
-        self.simulator.tell("POST", f"/sensors/{SENSOR}/knock", shift_m=[0.0, 0.006, 0.004], turn_deg=[0.0, 0.0, 0.4])
+        self.simulator.tell("POST", f"/sensors/{SENSOR}/knock", **self.knock(1))
         time.sleep(2)
         os.kill(daemon.process.pid, signal.SIGCONT)
         resumed, wrong_s = time.monotonic(), 0.0
@@ -174,7 +187,7 @@ class Stopped(ClockTest):
             self.assertLess(time.monotonic() - resumed, 10, pose)
             time.sleep(0.01)
         print(f"the pose of before the knock was served for {wrong_s:.2f} s after the stop")
-        self.assertLess(wrong_s, 0.3)
+        return wrong_s
 
     def test_what_is_asked_after_a_stop_tells_ages_that_hold_the_stop(self):
         daemon = self.calibrated()  # max_unverified of a minute: the pose may stay valid, and says how old it is

@@ -15,8 +15,7 @@ class Category : public std::error_category {
     switch (static_cast<SimpleMessageError>(value)) {
       case SimpleMessageError::length_out_of_range:
         return "not a simple_message length (12 to 1024): the stream was cut or the port serves something "
-               "else; "
-               "check robot.port when this repeats";
+               "else; check robot.port when this repeats";
       case SimpleMessageError::peer_is_little_endian:
         return "set robot.byte_order = \"little\"";
       case SimpleMessageError::peer_is_big_endian:
