@@ -23,7 +23,12 @@ need_browser() {
 
 case ${1:-} in
   test | figures | picture) need_browser ;;&
-  test) exec node --test --test-reporter=spec web/tests/page.test.mjs ;;
+  test)
+    # One after the other: each has a cell of its own, and two of them are more than a small machine does in time.
+    status=0
+    for file in page doors; do node --test --test-reporter=spec "web/tests/$file.test.mjs" || status=1; done
+    exit $status
+    ;;
   figures) exec node web/tests/figures.mjs "${2:-1}" ;;
   picture)
     node web/tests/picture.mjs

@@ -3,13 +3,13 @@
 // The page against the real daemon and the simulated cell, by clicking. Each test goes on where the one before it ended.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
-import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { Faults, keep, openBrowser, openPage, part, seriousFaults } from "./lib/browser.mjs";
+import { after, before, beforeEach, test } from "node:test";
+import { Faults, helpers, openBrowser, openPage, part } from "./lib/browser.mjs";
 import { Cell, SENSOR, sleep, waitUntil } from "./lib/cell.mjs";
+import { load } from "./lib/modules.mjs";
+import { countPixels } from "./lib/picture.mjs";
 
 const faults = new Faults();
-const unfair = [];
 let cell, browser, page, first;
 
 before(async () => {
@@ -23,11 +23,9 @@ after(async () => {
   await cell?.end();
 });
 
-const text = (name) => part(page, name).first().textContent();
-/** Patient: on a busy machine a calibration takes minutes. */
-const says = (name, wanted, timeoutMs = 240_000) =>
-  waitUntil(`"${name}" says ${wanted}`, async () => (wanted instanceof RegExp ? wanted.test(await text(name)) : (await text(name)) === wanted), timeoutMs);
-const tab = (name) => page.locator(`#tab-${name}`).click();
+const { text, says, tab, show, unfair } = helpers(() => page);
+/** So that one that fails does not take all that follow with it. */
+beforeEach(() => tab("act"));
 const confirm = () => page.locator("dialog[open] button[value=go]").click();
 const pose = () => cell.api(`/api/v1/sensors/${SENSOR}/pose`);
 /** A check that disagrees, as one of a pose from few postures now and then does, takes it away for a moment. */
@@ -36,11 +34,6 @@ const validPose = () =>
     const found = await pose();
     return found.valid && found;
   }, 60_000);
-/** Keeps a picture of the state, and what would shut somebody out in it. */
-const show = async (name, shown = page) => {
-  await keep(shown, name);
-  unfair.push(...(await seriousFaults(shown)).map((fault) => `${name}: ${fault}`));
-};
 /** The file that a button saves, and its size. */
 const saved = async (press) => {
   const [download] = await Promise.all([page.waitForEvent("download", { timeout: 90_000 }), press()]);
@@ -95,25 +88,65 @@ test("a copied pose is what the interface gives", async () => {
     await waitUntil("it is on the clipboard", async () => (await page.evaluate(() => navigator.clipboard.readText())) === given);
   }
   await show("5-pose");
-  await tab("act");
 });
 
 test("the sensor's eye shows depth and outline, in every colouring", async () => {
   await part(page, "by-eye").click();
   await waitUntil("the eye draws", () => page.locator("canvas.eye[data-drawn=yes]").count());
+  const isColour = (...wanted) => (...rgb) => rgb.every((value, at) => Math.abs(value - wanted[at]) < 12);
+  const shows = (what, is, least) => waitUntil(what, async () => (await countPixels(page, part(page, "eye"), is)) > least);
   for (const colouring of ["residual", "class", "depth"]) {
     await part(page, "colouring").selectOption(colouring);
-    await sleep(300);
+    if (colouring === "residual") await shows("what is not robot is grey", isColour(52, 58, 64), 30_000);
+    if (colouring === "class") await shows("the robot is blue", isColour(0x2f, 0x8f, 0xe0), 3000);
+    if (colouring === "class") await shows("the background is brown", isColour(0xa5, 0x8a, 0x63), 30_000);
+    if (colouring === "depth") await shows("depth is in colours", isPainted, 50_000);
     await show(`6-eye-${colouring}`);
   }
+  await part(page, "colouring").selectOption("class");
+  await shows("the robot's outline is white inside", isColour(255, 255, 255), 500);
+  await shows("and black outside", (r, g, b) => r + g + b === 0, 500);
+  await part(page, "colouring").selectOption("depth");
   await part(page, "by-space").click();
 });
 
+/** Of the 3D view, where the measured points are left out: red, green and blue of what else is drawn. */
+const seen = (is) => countPixels(page, part(page, "cell"), is);
+const isGhost = (r, g, b) => g > r + 18 && g > b + 4;
+const isPainted = (r, g, b) => Math.max(r, g, b) - Math.min(r, g, b) > 60;
+const isOrange = (r, g, b) => r > g + 60 && g > b + 30;
+const isGreen = (r, g, b) => g > r + 60 && g > b + 30;
+
+test("the robot's links are painted by coverage and by residual, and cleaned again", async () => {
+  const { LIGHT_LEVELS, lit, METAL } = await load("view/light", "view/solid", "view/colours");
+  const metal = new Set(Array.from({ length: LIGHT_LEVELS }, (_, level) => lit(METAL, level / (LIGHT_LEVELS - 1)).join()));
+  const isMetal = (...rgb) => metal.has(rgb.join());
+  await page.locator("#show-measured").uncheck();
+  await tab("history");
+  const heat = (kind) => part(page, `heat-${kind}`).first();
+  await waitUntil("the robot is of metal, and nothing painted but lines", async () => (await seen(isMetal)) > 10_000 && (await seen(isPainted)) < 1500);
+  await heat("coverage").click();
+  await waitUntil("links are painted by coverage", async () => (await seen(isPainted)) > 3000);
+  await show("7-coverage");
+  await heat("residual").click();
+  await waitUntil("links are painted by residual, which here is small", async () => (await seen(isPainted)) < 1500 && (await seen(isMetal)) < 1000);
+  assert.equal(await heat("residual").getAttribute("aria-pressed"), "true");
+  await show("7-residual");
+  await heat("residual").click();
+  await waitUntil("they are of metal", async () => (await seen(isMetal)) > 10_000);
+  await page.locator("#show-measured").check();
+});
+
 test("where to move the robot is drawn and told; a capture and a support bundle are saved", async () => {
+  await page.locator("#show-measured").uncheck();
+  await waitUntil("nothing is green yet but lines", async () => (await seen(isGhost)) < 1500);
   await part(page, "suggest").click();
   await says("suggestion", /Then \d+\.\d+.mm/);
+  await waitUntil("the posture is drawn", async () => (await seen(isGhost)) > 3000);
   await show("7-suggestion");
   await part(page, "suggestion").getByRole("button").click();
+  await waitUntil("it is gone", async () => (await seen(isGhost)) < 1500);
+  await page.locator("#show-measured").check();
   await part(page, "capture").click();
   const capture = await saved(confirm);
   assert.match(capture.name, /\.tar$/);
@@ -163,6 +196,23 @@ test("a knock is shown as drift, and what healing finds waits to be accepted", a
   assert.ok(Math.hypot(...healed.translation_m.map((part, axis) => part - first.translation_m[axis])) > 0.01, "it has moved with the sensor");
 });
 
+test("what the last calibration did is drawn: before it in orange, after it in green", async () => {
+  await page.locator("#show-measured").uncheck();
+  await part(page, "compare").check();
+  const slide = (share) => part(page, "slider").fill(String(share));
+  await slide(0);
+  await waitUntil("the robot's points are where they were seen before, in orange", async () => (await seen(isOrange)) > 3000);
+  assert.ok((await seen(isGreen)) < 1500);
+  await show("4-before");
+  await slide(1);
+  await waitUntil("and after, in green", async () => (await seen(isGreen)) > 3000);
+  assert.ok((await seen(isOrange)) < 300);
+  await show("4-after");
+  await part(page, "compare").uncheck();
+  await waitUntil("they are gone", async () => (await seen(isGreen)) < 1500);
+  await page.locator("#show-measured").check();
+});
+
 test("rolled back to a pose that the sensor no longer has, the page does not call it valid", async () => {
   const second = (await validPose()).calibration;
   await tab("history");
@@ -195,7 +245,6 @@ test("light and dark, on a screen and on a tablet: all of it is there", async ()
         await show(`12-${colorScheme}-${width}-${name}`);
       }
   await page.setViewportSize({ width: 1280, height: 720 });
-  await tab("act");
 });
 
 test("tabs are reached and changed by keyboard", async () => {
@@ -210,64 +259,4 @@ test("nothing so far is an error, or goes to another host", () => {
   assert.deepEqual(faults.foreign, []);
 });
 
-test("a lost daemon is shown within 2 s, what is old is called so, and the page comes back by itself", async () => {
-  await cell.daemon.end("SIGKILL");
-  const lost = performance.now();
-  await waitUntil("it is shown", async () => /lost/.test(await text("connection")), 5000, 20);
-  const afterMs = performance.now() - lost;
-  console.log(`a killed daemon is shown after ${Math.round(afterMs)} ms`);
-  assert.ok(afterMs < 2000, `${afterMs} ms`);
-  await says("state", /as of .* ago/, 5000);
-  await show("13-lost");
-  await cell.serve();
-  await says("connection", "live", 10_000);
-  await says("state", "valid");
-});
-
-test("with a token that may only read, nothing else is offered", async () => {
-  const file = join(cell.folder, "tokens.json");
-  const token = Cell.token(file, "screen", "read");
-  await cell.daemon.end();
-  cell.settings.push(`server.tokens_file=${file}`);
-  await cell.serve();
-  const guarded = new Faults();
-  const guest = await openPage(browser, cell.url, guarded);
-  const enter = async (word) => {
-    await part(guest, "token").fill(word);
-    await guest.keyboard.press("Enter");
-  };
-  await enter("calibrd_wrong");
-  await waitUntil("it is refused", async () => /not know/.test(await guest.locator("dialog[open] .error").textContent()));
-  await show("14-token", guest);
-  await enter(token);
-  await waitUntil("it is live", async () => (await part(guest, "connection").textContent()) === "live");
-  assert.equal(await part(guest, "who").textContent(), "screen (read)");
-  assert.equal(await part(guest, "read-only").count(), 1);
-  for (const name of ["calibrate", "capture", "bundle", "rollback", "accept"]) assert.equal(await part(guest, name).count(), 0, name);
-  await show("15-read-only", guest);
-  assert.deepEqual(guarded.errors, []);
-});
-
-test("without WebGL all but the 3D view works, and says so", async () => {
-  cell.settings.pop();
-  await cell.daemon.end();
-  await cell.serve();
-  const plain = await openBrowser("--disable-3d-apis");
-  try {
-    const flat = await openPage(plain, cell.url, new Faults());
-    await waitUntil("it is live", async () => (await part(flat, "connection").textContent()) === "live");
-    assert.match(await part(flat, "no-webgl").textContent(), /no 3D view/);
-    await waitUntil("the eye draws", () => flat.locator("canvas.eye[data-drawn=yes]").count());
-    await flat.locator("#tab-history").click();
-    await flat.locator("[data-test=rollback]").first().waitFor();
-    await flat.locator("#tab-pose").click();
-    await waitUntil("the pose can be taken", () => part(flat, "copy").isEnabled());
-    await flat.locator("#tab-act").click();
-    assert.equal(await part(flat, "calibrate").isEnabled(), true);
-    await show("16-without-webgl", flat);
-  } finally {
-    await plain.close();
-  }
-});
-
-test("nobody is shut out of any of these states", () => assert.deepEqual([...new Set(unfair)], []));
+test("nobody is shut out of any of these states", () => assert.deepEqual([...unfair], []));

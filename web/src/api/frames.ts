@@ -36,6 +36,8 @@ export interface NoFrame {
 class Parts {
   private pieces: Uint8Array[] = [];
   private size = 0;
+  /** So many bytes must have come before there can be more parts: pieces are joined once, not with every one that comes. */
+  private wanted = 4;
 
   push(piece: Uint8Array): void {
     this.pieces.push(piece);
@@ -44,15 +46,18 @@ class Parts {
 
   /** The next two parts; null until both are there. */
   nextPair(): [Uint8Array, Uint8Array] | null {
-    if (this.size < 4) return null;
+    if (this.size < this.wanted) return null;
     const bytes = this.joined();
     const lengths = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const first = lengths.getUint32(0, true);
-    if (bytes.length < 8 + first) return null;
-    const end = 8 + first + lengths.getUint32(4 + first, true);
+    this.wanted = 8 + first;
+    if (bytes.length < this.wanted) return null;
+    const end = this.wanted + lengths.getUint32(4 + first, true);
+    this.wanted = end;
     if (bytes.length < end) return null;
     this.pieces = [bytes.subarray(end)];
     this.size = bytes.length - end;
+    this.wanted = 4;
     return [bytes.subarray(4, 4 + first), bytes.slice(8 + first, end)];
   }
 

@@ -108,7 +108,6 @@ export interface CalibrationResult {
   reasons: { code: string; text: string }[];
   links?: { link: string; predicted: number; coverage: number }[];
   workspace?: { name: string; x: number; y: number; z: number; sigma_m: number | null }[];
-  hypotheses?: { score: number; T_base_sensor: Matrix4 }[];
 }
 
 export interface Calibration {

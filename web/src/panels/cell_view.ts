@@ -98,7 +98,7 @@ export class CellView {
     suggestion.follow(() => this.placeGhost());
     heat.follow((colours) => {
       this.robot?.paint(colours);
-      this.picture.draw();
+      this.paintRobot();
     });
   }
 
@@ -108,6 +108,9 @@ export class CellView {
     this.isLoading = true;
     try {
       this.robot = await RobotView.load(this.context.client, robot.base_frame, robot.joint_names);
+      if (this.picture.isSoftware) this.robot.leaveToProcessor();
+      this.robot.paint(this.context.heat.value);
+      this.paintRobot();
       this.picture.scene.add(this.robot.group);
       this.placeRobot();
       this.fit();
@@ -123,6 +126,17 @@ export class CellView {
     if (!this.robot || !joints?.positions_rad) return;
     this.robot.setJoints(joints.positions_rad);
     this.robot.setStale(!isLive || joints.stale || joints.frozen);
+    this.drawRobot();
+  }
+
+  private drawRobot(): void {
+    this.points.solids = this.robot?.solids ?? [];
+    this.points.touchSolids();
+    this.picture.draw();
+  }
+
+  private paintRobot(): void {
+    for (const [solid, colour] of this.robot?.solidColours ?? []) this.points.paintSolid(solid, colour);
     this.picture.draw();
   }
 

@@ -17,6 +17,8 @@ export class HistoryPanel {
   private readonly diff = h("div", { class: "diff", "data-test": "diff" });
   private readonly charts = new ErrorCharts();
   private readonly compared: string[] = [];
+  /** Of which button the robot has its colours. */
+  private painted = "";
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
@@ -31,6 +33,7 @@ export class HistoryPanel {
       this.charts.element,
     );
     const { state } = context;
+    state.chosen.follow(() => this.paint("", new Map()));
     for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
   }
 
@@ -74,14 +77,30 @@ export class HistoryPanel {
 
   private buttons(calibration: Calibration): HTMLElement[] {
     const { result } = calibration;
-    const heat = (kind: HeatKind): HTMLElement =>
-      h("button", { class: "small", "data-test": `heat-${kind}`, click: () => (this.context.heat.value = heatOf(this.context, kind, result ?? null)) }, kind);
+    const heat = (kind: HeatKind): HTMLElement => this.heatButton(calibration, kind);
     const buttons = result?.links?.length ? [heat("coverage"), heat("residual")] : [];
     if (calibration.verdict === "accepted" && !calibration.current && this.context.state.may("calibrate")) {
       const back: HTMLButtonElement = h("button", { class: "small", "data-test": "rollback", click: () => void perform(this.context, back, () => activate(this.context, calibration.id)) }, "Serve…");
       buttons.push(back);
     }
     return buttons;
+  }
+
+  /** Paints the robot's links, and takes the paint off again. */
+  private heatButton({ id, result }: Calibration, kind: HeatKind): HTMLElement {
+    const name = `${kind} ${id}`;
+    const press = (): void => {
+      if (this.painted === name) this.paint("", new Map());
+      else this.paint(name, heatOf(this.context, kind, result ?? null));
+    };
+    return h("button", { class: "small", "data-test": `heat-${kind}`, "data-paint": name, "aria-pressed": String(this.painted === name), click: press }, kind);
+  }
+
+  private paint(name: string, colours: ReadonlyMap<string, string>): void {
+    this.painted = name;
+    this.context.heat.value = colours;
+    for (const button of this.rows.querySelectorAll<HTMLElement>("[data-paint]"))
+      button.setAttribute("aria-pressed", String(button.dataset["paint"] === name));
   }
 
   /** The two that were ticked last. */

@@ -15,8 +15,8 @@ export const DEPTH_RANGE_M: [number, number] = [0.5, 4];
 /** Colours of the classes, in the order of PIXEL; told apart with any colour vision. */
 export const CLASS_COLOURS = ["#000000", "#7d8790", "#2f8fe0", "#a58a63", "#e2336b"] as const;
 
-/** Shades are places in a palette; 0: the pixel is not drawn. */
-export const SHADE = { none: 0, ramp: 1, rampLast: 240, classes: 241, virtual: 250, robot: 251 } as const;
+/** Shades are places in a palette; 0: the pixel is not drawn. Those of points fit a byte; from `solids` on they are of surfaces. */
+export const SHADE = { none: 0, ramp: 1, rampLast: 240, classes: 241, virtual: 250, robot: 251, solids: 256 } as const;
 
 /** One look at the pixels of a sensor, as points: its matrix is T_base_sensor. */
 export class Cloud {

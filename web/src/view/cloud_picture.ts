@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-import { type Camera, DataTexture, GLSL3, IntType, Matrix4, Mesh, PlaneGeometry, RedIntegerFormat, ShaderMaterial } from "three";
+import { type Camera, DataTexture, GLSL3, IntType, Matrix4, Mesh, PlaneGeometry, RedIntegerFormat, ShaderMaterial, Vector3 } from "three";
 import { CLASS_COLOURS, type Cloud, SHADE } from "./cloud";
 import { type Ramp, rgbOf } from "./colours";
-import { DEPTH_STEPS, EMPTY, splat } from "./splat";
+import { lit } from "./light";
+import { drawSolid, LIGHT_LEVELS, type Solid } from "./solid";
+import { DEPTH_STEPS, EMPTY, SHADE_BITS, SHADES, splat } from "./splat";
 
 const VERTEX = /* glsl */ `
   out vec2 place;
@@ -13,35 +15,41 @@ const VERTEX = /* glsl */ `
   }
 `;
 const FRAGMENT = /* glsl */ `
-  uniform highp isampler2D points;
+  uniform highp isampler2D pixels;
   uniform sampler2D palette;
   in vec2 place;
   out vec4 colour;
   void main() {
-    int value = texelFetch(points, ivec2(place * vec2(textureSize(points, 0))), 0).r;
+    int value = texelFetch(pixels, ivec2(place * vec2(textureSize(pixels, 0))), 0).r;
     if (value == ${EMPTY}) discard;
-    gl_FragDepth = float(value >> 8) / ${DEPTH_STEPS}.0;
-    colour = vec4(texelFetch(palette, ivec2(value & 255, 0), 0).rgb, 1.0);
+    gl_FragDepth = float(value >> ${SHADE_BITS}) / ${DEPTH_STEPS}.0;
+    colour = vec4(texelFetch(palette, ivec2(value & ${SHADES - 1}, 0), 0).rgb, 1.0);
   }
 `;
 
 /**
- * The clouds, drawn into one picture that lies in the scene with the depth of each of its points.
+ * The clouds, and where there is no graphics card the robot's surfaces too, drawn into one picture that lies in the scene with
+ * the depth of each of its pixels.
  *
- * The points are placed by the processor: without a graphics card, which cells often have none of, WebGL takes 0.5 µs for
- * every point, this a twentieth of it (docs/figures.md), and with one it makes no difference that is seen.
+ * The processor draws it: without a graphics card, which cells often have none of, WebGL takes 0.5 µs for every point and
+ * 0.7 µs for every triangle, this a twentieth of it (docs/figures.md), and with one it makes no difference for points that is seen.
  */
 export class CloudPicture extends Mesh<PlaneGeometry, ShaderMaterial> {
   /** Points in the picture. */
   drawn = 0;
-  private points = pointsTexture(1, 1);
-  private readonly colours = new Uint8Array(4 * 256);
-  private readonly palette = new DataTexture(this.colours, 256, 1);
+  /** What is drawn beside the clouds. */
+  solids: readonly Solid[] = [];
+  /** The clouds alone, kept for while only the robot moves. */
+  private points = new Int32Array();
+  private pixels = pixelTexture(1, 1);
+  private readonly colours = new Uint8Array(4 * SHADES);
+  private readonly palette = new DataTexture(this.colours, SHADES, 1);
   private readonly T_clip_base = new Matrix4();
-  private isDue = true;
+  private areCloudsDue = true;
+  private areSolidsDue = true;
 
   constructor(private readonly clouds: readonly Cloud[]) {
-    super(new PlaneGeometry(2, 2), new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, glslVersion: GLSL3, uniforms: { points: { value: null }, palette: { value: null } } }));
+    super(new PlaneGeometry(2, 2), new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, glslVersion: GLSL3, uniforms: { pixels: { value: null }, palette: { value: null } } }));
     this.frustumCulled = false;
     this.renderOrder = -1;
     this.uniform("palette").value = this.palette;
@@ -61,37 +69,55 @@ export class CloudPicture extends Mesh<PlaneGeometry, ShaderMaterial> {
     this.palette.needsUpdate = true;
   }
 
-  /** A cloud has changed. */
-  touch(): void {
-    this.isDue = true;
+  paintSolid({ firstShade }: Solid, colour: string): void {
+    for (let level = 0; level < LIGHT_LEVELS; ++level) this.paint(firstShade + level, lit(colour, level / (LIGHT_LEVELS - 1)));
   }
 
-  /** Before the scene is drawn. While neither the clouds nor the view have changed, as when only the robot moves, it does nothing. */
+  /** A cloud has changed. */
+  touch(): void {
+    this.areCloudsDue = true;
+  }
+
+  /** A solid has been moved, or others are to be drawn. */
+  touchSolids(): void {
+    this.areSolidsDue = true;
+  }
+
+  /** Before the scene is drawn: draws again what has changed. */
   refresh(camera: Camera, width: number, height: number): void {
     const T_clip_base = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    const { image } = this.points;
+    const { image } = this.pixels;
     const isSame = image.width === width && image.height === height && T_clip_base.equals(this.T_clip_base);
-    if (isSame && !this.isDue) return;
-    this.isDue = false;
+    if (isSame && !this.areCloudsDue && !this.areSolidsDue) return;
     this.T_clip_base.copy(T_clip_base);
-    if (image.width !== width || image.height !== height) {
-      this.points.dispose();
-      this.points = pointsTexture(width, height);
-    }
-    this.drawClouds(width, height);
+    if (image.width !== width || image.height !== height) this.resize(width, height);
+    if (!isSame || this.areCloudsDue) this.drawClouds(width, height);
+    this.drawSolids(new Vector3().setFromMatrixPosition(camera.matrixWorld), width, height);
+    this.areCloudsDue = this.areSolidsDue = false;
+  }
+
+  private resize(width: number, height: number): void {
+    this.pixels.dispose();
+    this.pixels = pixelTexture(width, height);
+    this.uniform("pixels").value = this.pixels;
+    this.points = new Int32Array(width * height);
   }
 
   private drawClouds(width: number, height: number): void {
-    const pixels = this.points.image.data as unknown as Int32Array;
-    pixels.fill(EMPTY);
+    this.points.fill(EMPTY);
     this.drawn = 0;
     for (const cloud of this.clouds) {
       const splats = cloud.splats;
-      if (splats) this.drawn += splat({ width, height, pixels }, splats, this.T_clip_base);
+      if (splats) this.drawn += splat({ width, height, pixels: this.points }, splats, this.T_clip_base);
     }
-    this.points.needsUpdate = true;
-    this.uniform("points").value = this.points;
-    this.visible = this.drawn > 0;
+  }
+
+  private drawSolids(eye: Vector3, width: number, height: number): void {
+    const pixels = this.pixels.image.data as unknown as Int32Array;
+    pixels.set(this.points);
+    for (const solid of this.solids) drawSolid({ width, height, pixels }, solid, this.T_clip_base, eye);
+    this.pixels.needsUpdate = true;
+    this.visible = this.drawn > 0 || this.solids.length > 0;
   }
 
   private uniform(name: string): { value: unknown } {
@@ -99,7 +125,7 @@ export class CloudPicture extends Mesh<PlaneGeometry, ShaderMaterial> {
   }
 }
 
-function pointsTexture(width: number, height: number): DataTexture {
+function pixelTexture(width: number, height: number): DataTexture {
   const texture = new DataTexture(new Int32Array(width * height), width, height, RedIntegerFormat, IntType);
   texture.internalFormat = "R32I";
   return texture;

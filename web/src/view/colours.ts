@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colours of view/cloud.ts for pictures without WebGL, as 256 steps of red, green, blue.
 
+/** The robot's own. */
+export const METAL = "#b9c2ca";
+
 export type Ramp = Uint8ClampedArray;
 
 function ramp(colour: (share: number) => [number, number, number]): Ramp {

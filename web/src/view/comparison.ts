@@ -10,16 +10,9 @@ export interface Comparison {
   meaning: string;
 }
 
-/**
- * The newest accepted calibration against the one before it; of the first one against the best other place the search
- * from nothing had in mind. `history`: newest first.
- */
+/** The newest accepted calibration against the one before it; null where there is none. `history`: newest first. */
 export function lastComparison(history: readonly Calibration[]): Comparison | null {
   const found = history.filter((calibration) => calibration.verdict === "accepted" && calibration.result?.T_base_sensor);
-  const [newest, former] = found;
-  const after = newest?.result?.T_base_sensor;
-  if (!newest || !after) return null;
-  if (former?.result?.T_base_sensor) return { before: former.result.T_base_sensor, after, meaning: `calibration ${former.id}` };
-  const start = newest.result?.hypotheses?.[0]?.T_base_sensor;
-  return start ? { before: start, after, meaning: "where the search from nothing began" } : null;
+  const [after, before] = found.map((calibration) => calibration.result?.T_base_sensor);
+  return before && after ? { before, after, meaning: `calibration ${found[1]?.id}` } : null;
 }

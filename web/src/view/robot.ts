@@ -4,14 +4,23 @@ import { Color, Group, Matrix4, Mesh, MeshLambertMaterial } from "three";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
 import type { Client } from "../api/client";
+import { SHADE } from "./cloud";
+import { METAL } from "./colours";
+import { LIGHT_LEVELS, normalsOf, type Solid } from "./solid";
+import { SHADES } from "./splat";
 
-const METAL = "#b9c2ca";
+const UNNAMED = "#59626a";
 const GHOST = "#35c08a";
 
 /** The robot as the daemon has it: its URDF, and of each link the surface that calibrd compares with. */
 export class RobotView {
   /** In the base frame. */
   readonly group = new Group();
+  /** To the processor, and of which link they are. */
+  private readonly left = new Map<Solid, string>();
+  private colours: ReadonlyMap<string, string> = new Map();
+  private isStale = false;
+
   private constructor(
     private readonly robot: URDFRobot,
     private readonly jointNames: readonly string[],
@@ -40,13 +49,40 @@ export class RobotView {
 
   /** Of each link that is named; the others are grey. An empty map: all of them are metal. */
   paint(colours: ReadonlyMap<string, string>): void {
-    for (const [name, mesh] of this.meshes)
-      (mesh.material as MeshLambertMaterial).color = new Color(colours.get(name) ?? (colours.size ? "#59626a" : METAL));
+    this.colours = colours;
+    for (const [name, mesh] of this.meshes) (mesh.material as MeshLambertMaterial).color = new Color(this.colourOf(name));
   }
 
   /** Old joints are shown as what they are. */
   setStale(isStale: boolean): void {
+    if (isStale === this.isStale) return;
+    this.isStale = isStale;
     this.setOpacity(isStale ? 0.35 : 1);
+    for (const name of this.left.values()) this.show(name, isStale);
+  }
+
+  /** From now on the processor draws the links, as long as there are shades for them and nothing is to be seen through. */
+  leaveToProcessor(): void {
+    let firstShade: number = SHADE.solids;
+    for (const [name, mesh] of this.meshes) {
+      if (firstShade + LIGHT_LEVELS > SHADES) return;
+      const corners = mesh.geometry.getAttribute("position").array as Float32Array;
+      this.left.set({ corners, normals: normalsOf(corners), firstShade, T_base_link: mesh.matrixWorld }, name);
+      this.show(name, this.isStale);
+      firstShade += LIGHT_LEVELS;
+    }
+  }
+
+  /** What the processor is to draw now. */
+  get solids(): Solid[] {
+    if (this.isStale) return [];
+    this.group.updateMatrixWorld();
+    return [...this.left.keys()];
+  }
+
+  /** Of everything that the processor draws when it is not stale. */
+  get solidColours(): [Solid, string][] {
+    return [...this.left].map(([solid, name]) => [solid, this.colourOf(name)]);
   }
 
   /** A second one, to show where the robot could be. */
@@ -57,12 +93,22 @@ export class RobotView {
       const mesh = robot.links[name]?.children.find((child): child is Mesh => child instanceof Mesh);
       if (!mesh) continue;
       mesh.material = new MeshLambertMaterial({ color: GHOST });
+      mesh.visible = true; // it is seen through, which WebGL alone draws
       meshes.set(name, mesh);
     }
     const view = new RobotView(robot, this.jointNames, meshes);
     view.group.applyMatrix4(this.group.matrix);
     view.setOpacity(0.3);
     return view;
+  }
+
+  private colourOf(link: string): string {
+    return this.colours.get(link) ?? (this.colours.size ? UNNAMED : METAL);
+  }
+
+  private show(link: string, isShown: boolean): void {
+    const mesh = this.meshes.get(link);
+    if (mesh) mesh.visible = isShown;
   }
 
   private setOpacity(opacity: number): void {

@@ -14,11 +14,14 @@ export interface Splats {
   matrix: Matrix4;
 }
 
-/** In a picture of points: nothing was drawn there. Also the farthest: depth is above the shade's 8 bits, so the lesser is the nearer. */
+/** A pixel is a shade in its low bits and a depth above them, so that of two the lesser is the nearer. */
+export const SHADE_BITS = 11;
+export const SHADES = 1 << SHADE_BITS;
+export const DEPTH_STEPS = 0xfffff;
+/** Nothing was drawn there. Also the farthest. */
 export const EMPTY = 0x7fffffff;
-export const DEPTH_STEPS = 0x7fffff;
 
-/** Where points are drawn: rows from below, as WebGL has them. */
+/** Where points and surfaces are drawn: rows from below, as WebGL has them. */
 export interface SplatPicture {
   width: number;
   height: number;
@@ -38,11 +41,12 @@ export function splat({ width, height, pixels }: SplatPicture, splats: Splats, T
     const y = (rays[2 * pixel + 1] as number) * z;
     const w = a3 * x + b3 * y + c3 * z + d3;
     if (w <= 0) continue; // behind whoever looks
-    const u = ((a0 * x + b0 * y + c0 * z + d0) / w + 1) * 0.5 * width;
-    const v = ((a1 * x + b1 * y + c1 * z + d1) / w + 1) * 0.5 * height;
-    const far = ((a2 * x + b2 * y + c2 * z + d2) / w + 1) * 0.5;
+    const half = 0.5 / w;
+    const u = ((a0 * x + b0 * y + c0 * z + d0) * half + 0.5) * width;
+    const v = ((a1 * x + b1 * y + c1 * z + d1) * half + 0.5) * height;
+    const far = (a2 * x + b2 * y + c2 * z + d2) * half + 0.5;
     if (!(u >= 1 && v >= 1 && u < width && v < height && far >= 0 && far < 1)) continue;
-    const value = ((far * DEPTH_STEPS) << 8) | shade;
+    const value = ((far * DEPTH_STEPS) << SHADE_BITS) | shade;
     const at = (v | 0) * width + (u | 0);
     if (value < (pixels[at] as number)) pixels[at] = value;
     if (value < (pixels[at - 1] as number)) pixels[at - 1] = value;

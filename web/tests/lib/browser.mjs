@@ -5,6 +5,7 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import axe from "axe-core";
 import { chromium } from "playwright-core";
+import { waitUntil } from "./cell.mjs";
 
 const OUT = process.env.CALIBRD_PAGE_OUT ?? "/tmp/calibrd-page";
 const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
@@ -59,3 +60,22 @@ export async function seriousFaults(page) {
 }
 
 export const part = (page, name) => page.locator(`[data-test=${name}]`);
+
+/** What tests do with the page that `current` returns. */
+export function helpers(current) {
+  const text = (name) => part(current(), name).first().textContent();
+  const unfair = new Set();
+  return {
+    text,
+    unfair,
+    /** Patient: on a busy machine a calibration takes minutes. */
+    says: (name, wanted, timeoutMs = 240_000) =>
+      waitUntil(`"${name}" says ${wanted}`, async () => (wanted instanceof RegExp ? wanted.test(await text(name)) : (await text(name)) === wanted), timeoutMs),
+    tab: (name) => current().locator(`#tab-${name}`).click(),
+    /** Keeps a picture of the state, and what would shut somebody out in it. */
+    show: async (name, shown = current()) => {
+      await keep(shown, name);
+      for (const fault of await seriousFaults(shown)) unfair.add(`${name}: ${fault}`);
+    },
+  };
+}

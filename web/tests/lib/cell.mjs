@@ -104,6 +104,18 @@ export class Cell {
     return response.json();
   }
 
+  async send(method, path, body = {}) {
+    const response = await fetch(this.url + path, { method, headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
+    return response.json();
+  }
+
+  /** Number of accepted calibrations. */
+  async accepted() {
+    const { calibrations } = await this.api(`/api/v1/sensors/${SENSOR}/calibrations`);
+    return calibrations.filter(({ verdict }) => verdict === "accepted").length;
+  }
+
   /** Tells the simulator. */
   async tell(method, path, body) {
     const response = await fetch(this.control + path, { method, body: JSON.stringify(body) });
