@@ -12,6 +12,7 @@ import { actionsPanel } from "./panels/actions";
 import type { Context } from "./panels/context";
 import { heading } from "./panels/heading";
 import { DriftPanel } from "./panels/drift_panel";
+import type { Heat } from "./panels/heat";
 import { HistoryPanel } from "./panels/history";
 import { followTokens } from "./panels/login";
 import { posePanel } from "./panels/pose_panel";
@@ -34,7 +35,7 @@ function start(place: HTMLElement): void {
     calibrations: new Calibrations(client),
     notices: new Notices(),
     suggestion: new Signal<NextPosture | null>(null),
-    heat: new Signal<ReadonlyMap<string, string>>(new Map()),
+    heat: new Signal<Heat | null>(null),
   };
   const side = h("aside", { class: "side", "aria-label": "Sensors and what can be done" }, trustPanel(context), suggestionPanel(context), panels(context));
   place.append(heading(client, state), h("main", {}, viewPanel(context), side), context.notices.element);

@@ -127,6 +127,7 @@ test("the robot's links are painted by coverage and by residual, and cleaned aga
   await waitUntil("the robot is of metal, and nothing painted but lines", async () => (await seen(isMetal)) > 10_000 && (await seen(isPainted)) < 1500);
   await heat("coverage").click();
   await waitUntil("links are painted by coverage", async () => (await seen(isPainted)) > 3000);
+  await waitUntil("the colours are told", async () => /100 %.*seen where it was predicted/.test(await page.locator(".legend").textContent()));
   await show("7-coverage");
   await heat("residual").click();
   await waitUntil("links are painted by residual, which here is small", async () => (await seen(isPainted)) < 1500 && (await seen(isMetal)) < 1000);

@@ -96,8 +96,8 @@ export class CellView {
     state.sensors.follow(() => this.placeFrusta());
     frames.frame.follow(() => this.takeFrame());
     suggestion.follow(() => this.placeGhost());
-    heat.follow((colours) => {
-      this.robot?.paint(colours);
+    heat.follow((paint) => {
+      this.robot?.paint(paint?.colours);
       this.paintRobot();
     });
   }
@@ -109,7 +109,7 @@ export class CellView {
     try {
       this.robot = await RobotView.load(this.context.client, robot.base_frame, robot.joint_names);
       if (this.picture.isSoftware) this.robot.leaveToProcessor();
-      this.robot.paint(this.context.heat.value);
+      this.robot.paint(this.context.heat.value?.colours);
       this.paintRobot();
       this.picture.scene.add(this.robot.group);
       this.placeRobot();

@@ -7,6 +7,7 @@ import type { FrameFeed } from "../live/frame_feed";
 import type { CellState } from "../live/state";
 import type { Notices } from "../ui/dialog";
 import type { Signal } from "../ui/signal";
+import type { Heat } from "./heat";
 
 /** What every panel has at hand. */
 export interface Context {
@@ -17,8 +18,8 @@ export interface Context {
   notices: Notices;
   /** Where the robot should go, drawn as a ghost; null: nowhere. */
   suggestion: Signal<NextPosture | null>;
-  /** Colours of links by what a calibration says of them; empty: none. */
-  heat: Signal<ReadonlyMap<string, string>>;
+  /** What the robot is painted by; null: it has its own colour. */
+  heat: Signal<Heat | null>;
 }
 
 /** Does what a button is for; while it does, the button cannot be pressed again. */

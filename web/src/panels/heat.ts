@@ -3,22 +3,28 @@
 import { type Frame, NO_LINK, PIXEL } from "../api/frames";
 import type { CalibrationResult } from "../api/types";
 import { RESIDUAL_RANGE_M } from "../view/cloud";
-import { DIVERGING, type Ramp, TURBO } from "../view/colours";
+import { DIVERGING, type Ramp } from "../view/colours";
 import type { Context } from "./context";
 
 export type HeatKind = "coverage" | "residual";
 
+/** What the robot's links are painted by, and the colours of those that are named. */
+export interface Heat {
+  kind: HeatKind;
+  colours: ReadonlyMap<string, string>;
+}
+
 /** Fewer pixels than these say nothing of a link. */
 const LEAST_PIXELS = 20;
 
-/** Colours of links: coverage as the calibration found it, residual as the newest frame shows it. */
-export function heatOf(context: Context, kind: HeatKind, result: CalibrationResult | null): ReadonlyMap<string, string> {
+/** Coverage as the calibration found it, residual as the newest frame shows it. */
+export function heatOf(context: Context, kind: HeatKind, result: CalibrationResult | null): Heat {
   const colours = new Map<string, string>();
-  if (kind === "coverage") for (const { link, coverage } of result?.links ?? []) colours.set(link, colourOf(TURBO, 0.1 + 0.75 * coverage));
+  if (kind === "coverage") for (const { link, coverage } of result?.links ?? []) colours.set(link, colourOf(DIVERGING, 1 - coverage));
   const frame = context.frames.frame.value;
   if (kind === "residual" && frame)
     for (const [link, residual_m] of residuals(frame)) colours.set(link, colourOf(DIVERGING, 0.5 + residual_m / RESIDUAL_RANGE_M));
-  return colours;
+  return { kind, colours };
 }
 
 /** Median of measured minus predicted depth for every link that is seen, m. */

@@ -7,7 +7,7 @@ import { mm, mrad, percent, when } from "../ui/format";
 import { activate } from "./actions";
 import { type Context, perform } from "./context";
 import { ErrorCharts } from "./error_charts";
-import { heatOf, type HeatKind } from "./heat";
+import { type Heat, type HeatKind, heatOf } from "./heat";
 
 const SHOWN = 20;
 
@@ -33,7 +33,7 @@ export class HistoryPanel {
       this.charts.element,
     );
     const { state } = context;
-    state.chosen.follow(() => this.paint("", new Map()));
+    state.chosen.follow(() => this.paint("", null));
     for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
   }
 
@@ -90,15 +90,15 @@ export class HistoryPanel {
   private heatButton({ id, result }: Calibration, kind: HeatKind): HTMLElement {
     const name = `${kind} ${id}`;
     const press = (): void => {
-      if (this.painted === name) this.paint("", new Map());
+      if (this.painted === name) this.paint("", null);
       else this.paint(name, heatOf(this.context, kind, result ?? null));
     };
     return h("button", { class: "small", "data-test": `heat-${kind}`, "data-paint": name, "aria-pressed": String(this.painted === name), click: press }, kind);
   }
 
-  private paint(name: string, colours: ReadonlyMap<string, string>): void {
+  private paint(name: string, heat: Heat | null): void {
     this.painted = name;
-    this.context.heat.value = colours;
+    this.context.heat.value = heat;
     for (const button of this.rows.querySelectorAll<HTMLElement>("[data-paint]"))
       button.setAttribute("aria-pressed", String(button.dataset["paint"] === name));
   }

@@ -6,7 +6,7 @@ import { type Comparison, lastComparison } from "../view/comparison";
 import { CellView, withoutView } from "./cell_view";
 import type { Context } from "./context";
 import { Eye } from "./eye";
-import { legend } from "./legend";
+import { heatLegend, legend } from "./legend";
 
 export type Colouring = "depth" | "residual" | "class";
 
@@ -57,8 +57,13 @@ function viewControls(context: Context, view: CellView | null, eye: Eye, stage: 
     const name = colouring.value as Colouring;
     if (view) view.look = name;
     eye.colouring = name;
-    legendPlace.replaceChildren(legend(name));
+    showLegend();
   };
+  const showLegend = (): void => {
+    const heat = context.heat.value;
+    legendPlace.replaceChildren(legend(colouring.value as Colouring), ...(heat ? [heatLegend(heat.kind)] : []));
+  };
+  context.heat.follow(showLegend);
   colouring.addEventListener("change", recolour);
   const controls = [h("span", { class: "group" }, space, look), colouring, densityControl(context)];
   if (view) {

@@ -47,8 +47,8 @@ export class RobotView {
     this.jointNames.forEach((name, index) => this.robot.setJointValue(name, positions[index] ?? 0));
   }
 
-  /** Of each link that is named; the others are grey. An empty map: all of them are metal. */
-  paint(colours: ReadonlyMap<string, string>): void {
+  /** Each link that is named; the others are grey. Nothing named: all of them are of metal. */
+  paint(colours: ReadonlyMap<string, string> = new Map()): void {
     this.colours = colours;
     for (const [name, mesh] of this.meshes) (mesh.material as MeshLambertMaterial).color = new Color(this.colourOf(name));
   }
