@@ -15,9 +15,11 @@ function(calibrd_target_defaults target)
   endif()
 endfunction()
 
-# calibrd_library(name source...): a static library.
+# calibrd_library(name source...): a static library. CALIBRD_UNITY compiles several of its sources at a time, for what they
+# instantiate of Eigen and Beast costs more than they do; so names in unnamed namespaces differ within a library.
 function(calibrd_library target)
   add_library(${target} STATIC ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CALIBRD_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   calibrd_target_defaults(${target})
   calibrd_use_pch(${target} ${CALIBRD_PCH_FAMILY})
 endfunction()

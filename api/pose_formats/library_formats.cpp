@@ -14,7 +14,7 @@ namespace {
 
 namespace json = boost::json;
 
-constexpr double kDegPerRad = 180 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 json::array vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -37,7 +37,7 @@ void write_rotvec(json::object& body, const FramedPose& pose) {
 void write_halcon(json::object& body, const FramedPose& pose) {
   const auto& t = pose.T_to_from.translation();
   const auto [x, y, z] = xyz_angles(pose.T_to_from.linear());
-  const double rx = x * kDegPerRad, ry = y * kDegPerRad, rz = z * kDegPerRad;
+  const double rx = x * kDegreesPerRadian, ry = y * kDegreesPerRadian, rz = z * kDegreesPerRadian;
   constexpr int kRpPlusT_gba_point = 0;
   body["pose"] = json::array{t.x(), t.y(), t.z(), rx, ry, rz, kRpPlusT_gba_point};
   body["text"] = "create_pose (" + decimal_list({t.x(), t.y(), t.z(), rx, ry, rz}, ", ") +

@@ -10,7 +10,7 @@ namespace {
 /// Open to all who may speak to the daemon: the document is that of every calibrd, and a browser that asks
 /// for a page has no token. The page is made of its own files alone: nothing of other hosts, nothing inline,
 /// and in nobody's frame.
-constexpr const char* kPolicy =
+constexpr const char* kDocsPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'";
 
@@ -21,7 +21,7 @@ void add_file(Router& router, const char* path, const char* content_type, std::s
                return {200,
                        {{"Content-Type", content_type},
                         {"Cache-Control", "no-cache"},
-                        {"Content-Security-Policy", kPolicy}},
+                        {"Content-Security-Policy", kDocsPolicy}},
                        std::string(text)};
              });
 }

@@ -8,11 +8,11 @@ namespace {
 
 /// The page is made of its own files alone and speaks to its own daemon alone. Pictures it draws itself are
 /// data: and blob:.
-constexpr const char* kPolicy =
+constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src "
     "'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-constexpr const char* kNotice =
+constexpr const char* kNoPage =
     "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>calibrd</title>\n"
     "<h1>calibrd</h1>\n<p>The daemon works, but its page was not built: Node.js was missing. "
     "Run scripts/setup.sh and build again.</p>\n<p><a href=\"/docs\">The HTTP interface</a></p>\n</html>\n";
@@ -34,7 +34,7 @@ Response serve(const Request& request, const PageFile& file, const char* cache_c
                     {{"ETag", file.etag},
                      {"Cache-Control", cache_control},
                      {"Vary", "Accept-Encoding"},
-                     {"Content-Security-Policy", kPolicy},
+                     {"Content-Security-Policy", kPagePolicy},
                      {"Referrer-Policy", "no-referrer"}},
                     {}};
   if (request.header("if-none-match") == file.etag) {
@@ -53,8 +53,8 @@ Response answer_index(const Request& request, const PageFiles& files) {
   return {200,
           {{"Content-Type", "text/html; charset=utf-8"},
            {"Cache-Control", "no-store"},
-           {"Content-Security-Policy", kPolicy}},
-          kNotice};
+           {"Content-Security-Policy", kPagePolicy}},
+          kNoPage};
 }
 
 Response answer_asset(const Request& request, const std::string& name, const PageFiles& files) {

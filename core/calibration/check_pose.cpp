@@ -10,7 +10,7 @@ namespace calibrd {
 namespace {
 
 constexpr std::size_t kMinPixels = 500;
-constexpr double kTolerance_m = 0.02;  // an order above the noise of the sensors we know
+constexpr double kWithin_m = 0.02;  // an order above the noise of the sensors we know
 constexpr double kMinAgreement = 0.6;
 constexpr float kMinCosine = 0.3F;
 
@@ -65,7 +65,7 @@ Eigen::Vector3d PoseChecker::compare(const View& view, const Pose& T_base_sensor
   }
   check.robot_pixels = residuals.size();
   if (residuals.empty()) return T_base_sensor.translation();
-  const auto within = std::ranges::count_if(residuals, [](double r) { return std::abs(r) < kTolerance_m; });
+  const auto within = std::ranges::count_if(residuals, [](double r) { return std::abs(r) < kWithin_m; });
   check.agreement = static_cast<double>(within) / static_cast<double>(residuals.size());
   const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
   std::nth_element(residuals.begin(), middle, residuals.end());

@@ -17,7 +17,7 @@ namespace {
 
 using Views = std::vector<RegistrationView>;
 
-constexpr double kTolerance_m = 0.02;
+constexpr double kScoreTolerance_m = 0.02;
 constexpr double kLeastAgreeing = 0.9;      // share of a free fit's pixels
 constexpr double kLeastSpread_rad = 0.005;  // of a joint over the views: less is a joint's zero, or nothing
 
@@ -65,7 +65,8 @@ Input under(const Alternative& alternative, std::span<const RegistrationView> vi
 std::vector<double> scores_of(const Input& input, std::span<const MovingPoints> moving,
                               std::span<const Pose> poses) {
   std::vector<double> values;
-  for (const RenderScore& score : render_scores(input.views, moving, input.camera, poses, {6, kTolerance_m}))
+  for (const RenderScore& score :
+       render_scores(input.views, moving, input.camera, poses, {6, kScoreTolerance_m}))
     values.push_back(score.value());
   return values;
 }
@@ -101,10 +102,10 @@ std::vector<Pose> searched(const Input& input, std::span<const MovingPoints> mov
 }
 
 /// Holds what was found so far and what the next must beat.
-class Search {
+class AlternativeSearch {
  public:
-  Search(std::span<const RegistrationView> views, const CameraModel& camera, const TriedPoses& tried,
-         const DiagnoseSettings& settings)
+  AlternativeSearch(std::span<const RegistrationView> views, const CameraModel& camera,
+                    const TriedPoses& tried, const DiagnoseSettings& settings)
       : views_(views),
         camera_(camera),
         tried_(tried),
@@ -193,7 +194,7 @@ class Search {
 
 std::optional<Reason> diagnose(std::span<const RegistrationView> views, const CameraModel& camera,
                                const TriedPoses& tried, const DiagnoseSettings& settings) {
-  return Search(views, camera, tried, settings).run();
+  return AlternativeSearch(views, camera, tried, settings).run();
 }
 
 }  // namespace calibrd

@@ -16,7 +16,7 @@ namespace calibrd {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 8192;
-constexpr std::uintmax_t kMaxFileBytes = 1U << 30U;
+constexpr std::uintmax_t kMaxPngBytes = 1U << 30U;
 constexpr std::size_t kMaxChunkBytes = 64U << 20U;  // of side data, unpacked
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
@@ -73,7 +73,7 @@ Result<PngImage> decode(spng_ctx* context, const std::string& name, const Camera
 }  // namespace
 
 Result<PngImage> read_png(const std::filesystem::path& path, const CameraModel* camera) {
-  const auto bytes = read_bytes(path, kMaxFileBytes);
+  const auto bytes = read_bytes(path, kMaxPngBytes);
   if (!bytes) return bytes.error();
   const Context context(spng_ctx_new(0), &spng_ctx_free);
   spng_set_image_limits(context.get(), kMaxSide, kMaxSide);

@@ -16,7 +16,7 @@ namespace calibrd {
 namespace {
 
 namespace json = boost::json;
-constexpr std::uintmax_t kMaxFileBytes = 16U << 20U;
+constexpr std::uintmax_t kMaxPoseBytes = 16U << 20U;
 
 Error bad_pose(const std::string& name, const std::string& why) {
   return fail(CaptureError::bad_pose_file, name + " (" + why + ")");
@@ -95,7 +95,7 @@ Result<Pose> parse_pose_json(std::string_view json_text, const std::string& name
 Result<Pose> read_pose(const std::string& file_or_text) {
   std::error_code ignored;
   if (!std::filesystem::exists(file_or_text, ignored)) return pose_from_list(file_or_text);
-  const auto text = read_bytes(file_or_text, kMaxFileBytes);
+  const auto text = read_bytes(file_or_text, kMaxPoseBytes);
   if (!text) return text.error();
   return parse_pose_json(*text, file_or_text);
 }

@@ -9,7 +9,7 @@
 namespace calibrd {
 namespace {
 
-constexpr double kOffset_m = 0.002, kScale = 2e-3;
+constexpr double kOffsetError_m = 0.002, kScaleError = 2e-3;
 /// The "wiggling" of time-of-flight sensors, over which depth it changes (docs/simulator.md has sources), and
 /// what is left of a knot when its neighbours are known.
 constexpr double kWiggle_m = 0.002, kWiggleLength_m = 0.25, kRough_m = 2e-4;
@@ -37,7 +37,8 @@ Eigen::MatrixXd RangeError::precision() const {
     for (Eigen::Index j = 0; j < knots_; ++j) {
       const double a = least_m_ + step_m_ * static_cast<double>(i),
                    b = least_m_ + step_m_ * static_cast<double>(j), apart = (a - b) / kWiggleLength_m;
-      covariance(i, j) = kOffset_m * kOffset_m + kScale * kScale * (a - known_at_m_) * (b - known_at_m_) +
+      covariance(i, j) = kOffsetError_m * kOffsetError_m +
+                         kScaleError * kScaleError * (a - known_at_m_) * (b - known_at_m_) +
                          kWiggle_m * kWiggle_m * std::exp(-0.5 * apart * apart);
     }
   covariance.diagonal().array() += kRough_m * kRough_m;

@@ -8,14 +8,14 @@
 namespace calibrd {
 namespace {
 
-constexpr int kSteps = 18, kStep_cells = 2;
+constexpr int kAlignSteps = 18, kStep_cells = 2;
 constexpr double kFirstKernel_m = 0.2, kLastKernel_m = 0.02, kNarrowing = 0.8;
 constexpr double kInlier_m = 0.02;
 constexpr double kLeastOnPlanes = 0.2, kLeastInliers = 0.5;
 constexpr std::size_t kLeastPairs = 150;
 constexpr double kSigma_m = 0.003, kCorrelation = 10;
 
-struct Sums {
+struct AlignSums {
   Matrix6d information = Matrix6d::Identity() * 1e-6;
   Vector6d gradient = Vector6d::Zero();
   std::size_t pairs = 0, inliers = 0, on_planes = 0, points = 0;
@@ -32,9 +32,9 @@ const BackgroundCell* plane_at(const BackgroundMap& map, const Eigen::Vector3d& 
   return cell.has_plane() ? &cell : nullptr;
 }
 
-Sums collect(const BackgroundMap& map, std::span<const float> depth_m, std::span<const std::uint8_t> robot,
-             const Pose& T_learnt_now, double kernel_m) {
-  Sums sums;
+AlignSums collect(const BackgroundMap& map, std::span<const float> depth_m,
+                  std::span<const std::uint8_t> robot, const Pose& T_learnt_now, double kernel_m) {
+  AlignSums sums;
   const CameraModel& grid = map.grid();
   for (int y = 0; y < grid.height; y += kStep_cells) {
     for (int x = 0; x < grid.width; x += kStep_cells) {
@@ -68,8 +68,8 @@ std::optional<BackgroundAlignment> align_background(const BackgroundMap& map, st
   BackgroundAlignment found;
   found.T_learnt_now = start;
   double kernel_m = kFirstKernel_m;
-  for (int i = 0; i < kSteps; ++i) {
-    const Sums sums = collect(map, depth_m, robot, found.T_learnt_now, kernel_m);
+  for (int i = 0; i < kAlignSteps; ++i) {
+    const AlignSums sums = collect(map, depth_m, robot, found.T_learnt_now, kernel_m);
     if (sums.pairs < kLeastPairs) return std::nullopt;
     const Eigen::LDLT<Matrix6d> solver(sums.information);
     const Vector6d step = solver.solve(sums.gradient);
@@ -80,11 +80,11 @@ std::optional<BackgroundAlignment> align_background(const BackgroundMap& map, st
     found.covariance = kSigma_m * kSigma_m * kCorrelation * solver.solve(Matrix6d::Identity());
     kernel_m = std::max(kLastKernel_m, kNarrowing * kernel_m);
   }
-  const Sums last = collect(map, depth_m, robot, found.T_learnt_now, kLastKernel_m);
+  const AlignSums last = collect(map, depth_m, robot, found.T_learnt_now, kLastKernel_m);
   if (last.pairs < kLeastPairs) return std::nullopt;
   found.on_planes = static_cast<double>(last.on_planes) / static_cast<double>(last.points);
   found.inliers = static_cast<double>(last.inliers) / static_cast<double>(last.on_planes);
-  const Sums before = collect(map, depth_m, robot, Pose::Identity(), kLastKernel_m);
+  const AlignSums before = collect(map, depth_m, robot, Pose::Identity(), kLastKernel_m);
   found.in_place = static_cast<double>(before.inliers) / static_cast<double>(before.points);
   if (found.on_planes < kLeastOnPlanes || found.inliers < kLeastInliers) return std::nullopt;
   return found;

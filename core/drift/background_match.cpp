@@ -20,7 +20,7 @@ constexpr double kNearKernel_m = 0.012, kFarKernel_m = 0.04, kLeastKernel_m = 0.
 constexpr double kLeftOut = 0.15;
 constexpr double kKernelSigmas = 4.7;  // Tukey's biweight: 95 % efficient on normal noise
 constexpr double kTypicalSigma_m = 1.6e-3;
-constexpr int kSteps = 3;
+constexpr int kMatchSteps = 3;
 /// A cell whose depth differs by more is another surface.
 constexpr float kOtherSurface_m = 0.02F;
 constexpr float kOtherSurfaceSigmas = 8;
@@ -150,7 +150,7 @@ BackgroundMatcher::Fit BackgroundMatcher::descend(double first_kernel_m) {
   const BackgroundVector vague = vague_information();
   double kernel_m = first_kernel_m;
   Fit fit;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kMatchSteps; ++i) {
     collect(at, kernel_m, fit);
     if (fit.used < kLeastCells) return fit;
     fit.scatter = robust_sigma(whitened_);

@@ -7,7 +7,7 @@
 namespace calibrd {
 namespace {
 
-constexpr double kNewest = 1.0 / 30;  // weight of a frame in the mean
+constexpr double kNewestShift = 1.0 / 30;  // weight of a frame in the mean
 /// Noise alone looks like it in one frame of twenty: most of the last frames must, and few end it.
 constexpr double kOfFrames = 0.1, kOpens = 0.5, kEnds = 0.2;
 constexpr double kSame_m = 1e-3, kSame_rad = 1e-3;
@@ -28,7 +28,7 @@ bool is_same(const Vector6d& a, const Vector6d& b) {
 
 void ShiftDispute::follow(const Vector6d& turn_shift) {
   ++frames_;
-  turn_shift_ += std::max(kNewest, 1.0 / frames_) * (turn_shift - turn_shift_);
+  turn_shift_ += std::max(kNewestShift, 1.0 / frames_) * (turn_shift - turn_shift_);
 }
 
 void ShiftDispute::add(const CellWindow& window, const Vector6d& turn_shift, double now_s) {

@@ -10,7 +10,7 @@ namespace calibrd {
 namespace {
 
 /// Neighbouring pixels of one surface differ by less: noise, and a slope of 75°.
-constexpr double kNoise_m = 0.005, kSlope = 3.7;
+constexpr double kNoise_m = 0.005, kSurfaceSlope = 3.7;
 constexpr int kLeastNeighbours = 5;
 /// Planes around a gap of the background are taken to go on across so many cells ...
 constexpr int kAcross = 32;
@@ -50,7 +50,7 @@ bool is_background_gone_on(const BackgroundMap& background, int x, int y, double
 double surface_depth_m(const DepthImage& depth, const CameraModel& camera, int x, int y) {
   const double z = depth.depth_m(x, y);
   if (z <= 0 || x < 1 || y < 1 || x + 1 >= depth.width || y + 1 >= depth.height) return 0;
-  const double allowed = kNoise_m + kSlope * z / camera.fx;
+  const double allowed = kNoise_m + kSurfaceSlope * z / camera.fx;
   double sum = z;
   int neighbours = 0;
   for (int v = y - 1; v <= y + 1; ++v) {

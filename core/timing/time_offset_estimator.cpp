@@ -12,7 +12,7 @@ constexpr double kMargin_s = 0.03;
 /// Around what the search has found, the filter may go on by itself.
 constexpr double kPull_s = 0.04;
 
-Clock::duration seconds(double s) {
+Clock::duration in_seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
@@ -32,11 +32,11 @@ void TimeOffsetEstimator::reset() {
 }
 
 Clock::duration TimeOffsetEstimator::joints_before() const {
-  return seconds((rough_s_ ? std::max(*rough_s_, 0.0) + kPull_s : settings_.search.most_s) + kMargin_s);
+  return in_seconds((rough_s_ ? std::max(*rough_s_, 0.0) + kPull_s : settings_.search.most_s) + kMargin_s);
 }
 
 Clock::duration TimeOffsetEstimator::joints_after() const {
-  return seconds((rough_s_ ? std::max(-*rough_s_, 0.0) + kPull_s : -settings_.search.least_s) + kMargin_s);
+  return in_seconds((rough_s_ ? std::max(-*rough_s_, 0.0) + kPull_s : -settings_.search.least_s) + kMargin_s);
 }
 
 bool TimeOffsetEstimator::search(const TimedFrame& frame, const JointsAt& joints_at) {

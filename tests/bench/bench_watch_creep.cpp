@@ -15,7 +15,7 @@ namespace json = boost::json;
 
 constexpr double kPeriod_s = 60;  // of which `seen_s` are seen
 constexpr double kFirst_s = 5;    // what a watch sees of a sensor that it has just learnt
-constexpr double kWarmup_m = 0.007, kWarmup_s = 600;
+constexpr double kCreepWarmup_m = 0.007, kCreepWarmup_s = 600;
 constexpr double kFarthest = 0.005;  // m or rad: it will not be found any more
 
 /// The sensor's way: `per_hour` (m or rad) along or about one direction.
@@ -43,9 +43,9 @@ json::object creep(const CalibratedScenes::One& one, const std::shared_ptr<const
   const Creep way{cell.T_base_sensor(), cell.random_direction(), cell.random().chance(0.5),
                   options.per_hour_mm * 1e-3};
   auto& depth = cell.state().sensors[0].depth;  // calibrated cold
-  depth.offset_m += kWarmup_m;
-  depth.warmup_m = -kWarmup_m;
-  depth.warmup_s = kWarmup_s;
+  depth.offset_m += kCreepWarmup_m;
+  depth.warmup_m = -kCreepWarmup_m;
+  depth.warmup_s = kCreepWarmup_s;
   bool moved = false, bias = false;
   double next_s = 0;
   while (!moved && way.way(cell.time_s()) < kFarthest) {

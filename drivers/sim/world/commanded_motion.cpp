@@ -8,11 +8,11 @@
 namespace calibrd::sim {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
+constexpr double kS_per_ns = 1e-9;
 
 Joints between(const CommandedMotion::Point& a, const CommandedMotion::Point& b, std::int64_t at_ns) {
-  const double h = static_cast<double>(b.at_ns - a.at_ns) * kSecondsPerNs;
-  const double u = static_cast<double>(at_ns - a.at_ns) * kSecondsPerNs / h;
+  const double h = static_cast<double>(b.at_ns - a.at_ns) * kS_per_ns;
+  const double u = static_cast<double>(at_ns - a.at_ns) * kS_per_ns / h;
   Joints q{};
   for (std::size_t j = 0; j < q.size(); ++j) {
     const double way = b.positions[j] - a.positions[j];
