@@ -7,6 +7,7 @@
 # processor time (a Debian 13 by debootstrap, calibrd built and its unit tests run in it).
 #   scripts/test_image.sh               ends with 0 when all of it is as it should be
 #   scripts/test_image.sh --no-tests    builds without the unit tests, in half the time
+# It leaves the Debian 13 package that the image has installed in build/package-debian13.
 # CALIBRD_BASE_IMAGE=debian:13-slim     takes that base instead of a debootstrap
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,9 +16,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib/image_base.sh
 . scripts/lib/image_base.sh
 
-readonly kUser=10001 kMostMb=250 kSensor=kinect2 kApi=http://127.0.0.1:8080 kAuthorities=/etc/ssl/certs/ca-certificates.crt
+readonly kUser=10001 kMostMb=250 kAuthorities=/etc/ssl/certs/ca-certificates.crt
 readonly kRun=(buildah run --isolation chroot)
-told_by=image work='' watched='' containers=() pids=() daemon='' begin=''
+told_by=image api=http://127.0.0.1:8080 work='' watched='' containers=() pids=() daemon='' begin=''
 # shellcheck source=scripts/lib/staged_run.sh
 . scripts/lib/staged_run.sh
 
@@ -60,6 +61,15 @@ build() {
     --build-arg "REVISION=$(git rev-parse HEAD 2>/dev/null || echo unknown)" \
     --build-arg "npm_config_registry=$(npm config get registry 2>/dev/null || echo https://registry.npmjs.org/)" \
     --target "$1" --tag "$2" --file docker/Dockerfile . >>"$work/build.log" 2>&1 || die "buildah could not build $2"
+}
+
+# The .deb that is in it, for scripts/test_package.sh.
+keep_package() {
+  build build localhost/calibrd-build
+  rm -rf build/package-debian13
+  buildah from --name calibrd-test-build localhost/calibrd-build >/dev/null
+  containers+=(calibrd-test-build)
+  cp -r "$(buildah mount calibrd-test-build)/src/build/release/package" build/package-debian13
 }
 
 # What an engine would read of it.
@@ -125,40 +135,12 @@ stop_daemon() {
   say "stopped in $(since "$told") s"
 }
 
-since() { awk -v a="$1" -v b="$(date +%s.%N)" 'BEGIN { printf "%.1f", b - a }'; }
-
-# answers PATH CONDITION. jq is content with no input at all.
-answers() {
-  local answer
-  answer=$(curl -fsS "$kApi$1") && jq -e "$2" <<<"$answer"
-}
-
-calibrate() {
-  local job
-  job=$(curl -fsS -X POST "$kApi/api/v1/sensors/$kSensor/calibrations" | jq -r .id) || die "a calibration was refused"
-  wait_for 120 "the calibration" answers "/api/v1/calibrations/$job" '.status == "succeeded"'
-  wait_for 10 "the pose" answers "/api/v1/sensors/$kSensor/pose" .valid
-  curl -fsS "$kApi/api/v1/sensors/$kSensor/pose" -o "$work/first.json"
-  jq -e .valid "$work/first.json" >/dev/null || die "the pose is not valid: $(cat "$work/first.json")"
-  say "from the start to the first valid pose: $(since "$begin") s; memory of the daemon and its child: $(memory) MiB"
-}
-
 memory() {
   local pid sum=0
   for pid in $(descendants "$daemon"); do
     sum=$((sum + $(awk '/^Pss:/ { print $2 }' "/proc/$pid/smaps_rollup")))
   done
   echo $((sum / 1024))
-}
-
-# The same calibration, checked against the background, is good again.
-find_it_again() {
-  wait_for 60 "the stored pose" answers "/api/v1/sensors/$kSensor/pose" .valid
-  curl -fsS "$kApi/api/v1/sensors/$kSensor/pose" -o "$work/second.json"
-  jq -es '.[0].calibration == .[1].calibration and
-    ([.[0].T_base_sensor, .[1].T_base_sensor | flatten] | transpose | map(.[0] - .[1] | fabs) | max < 1e-9)' \
-    "$work/first.json" "$work/second.json" >/dev/null || die "after the restart it is another pose: $(cat "$work/second.json")"
-  say "found again $(since "$begin") s after the second start"
 }
 
 # Without a configuration an image is of no use, and says so.
@@ -183,6 +165,7 @@ base=${CALIBRD_BASE_IMAGE:-localhost/calibrd-base}
 build daemon localhost/calibrd
 build demo localhost/calibrd-demo
 build collector localhost/calibrd-collector
+keep_package
 check_image
 check_without_configuration
 chmod 755 "$work"
@@ -192,9 +175,11 @@ container calibrd-test-daemon localhost/calibrd-demo
 start_cell
 start_daemon
 calibrate
+say "from the start to the first valid pose: $(since "$begin") s; memory of the daemon and its child: $(memory) MiB"
 stop_daemon
 start_daemon
-find_it_again
+find_pose_again
+say "found again $(since "$begin") s after the second start"
 stop_daemon
 [ -z "$(changes calibrd-test-daemon)" ] || die "it wrote outside of /data: $(changes calibrd-test-daemon)"
 say "passed"

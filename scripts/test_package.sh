@@ -2,21 +2,24 @@
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Builds the .deb, installs it with apt into a clean root of this machine's Debian or Ubuntu release (its libraries are
-# those of that release), runs the daemon there as its user against a simulated cell, and purges it. As root.
-#   scripts/test_package.sh                ends with 0 when all of it is as it should be
+# Installs a .deb with apt into a clean root, as an earlier version; calibrates a simulated cell there with the daemon running
+# as its user; upgrades it, finds the pose again; purges it. As root.
+#   scripts/test_package.sh                builds the .deb, and takes a root of this machine's Debian or Ubuntu release
+#   scripts/test_package.sh FILE SUITE     takes that .deb and a root of that release; of Debian 13, as scripts/test_image.sh
+#                                          leaves it:  build/package-debian13/calibrd_*.deb trixie
 #   scripts/test_package.sh --build-only   prints the path of the .deb
-#   scripts/test_package.sh --keep         leaves the root where it is and prints its path
-# CALIBRD_PRESET=debug takes another preset. Packages come from the apt sources of this machine.
+# CALIBRD_PRESET=debug takes another preset, KEEP=1 leaves the root where it is. Packages come from the apt sources of this machine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly kBuild=build/${CALIBRD_PRESET:-release} kHealthcheck=(/usr/bin/calibrd healthcheck)
 readonly kEnvironment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
 readonly kAsDaemon=(setpriv --reuid calibrd --regid calibrd --init-groups --no-new-privs --inh-caps=-all)
-told_by=package work='' root='' pids=() watched=''
+told_by=package api='' work='' root='' pids=() watched=''
 # shellcheck source=scripts/lib/staged_run.sh
 . scripts/lib/staged_run.sh
+# shellcheck source=scripts/lib/clean_root.sh
+. scripts/lib/clean_root.sh
 
 clean_up() {
   local pid
@@ -24,7 +27,7 @@ clean_up() {
   wait 2>/dev/null || true
   [ -n "$root" ] || return 0
   if mountpoint -q "$root/proc"; then umount "$root/proc"; fi
-  if [ "${keep:-}" = 1 ]; then
+  if [ "${KEEP:-}" = 1 ]; then
     say "the root is $root"
   else
     rm -rf --one-file-system "$work"
@@ -34,31 +37,31 @@ clean_up() {
 build() {
   scripts/setup.sh
   cmake --preset "${CALIBRD_PRESET:-release}" >&2
-  cmake --build "$kBuild" --target calibrd calibrd-sensor calibrd_pcl calibrd-sim calibrd_sim demo_robot web >&2
+  cmake --build "$kBuild" --target calibrd calibrd-sensor calibrd_pcl web >&2
   rm -rf "$kBuild/package"
   (cd "$kBuild" && cpack -G DEB) >&2 || die "cpack failed"
   deb=$(ls "$kBuild"/package/calibrd_*.deb)
 }
 
-# The first of this machine's sources for its release, as "URL SUITE"; whatever mirror that is.
-main_source() {
-  local suite
-  # shellcheck source=/dev/null
-  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
-  # shellcheck disable=SC2016 # apt's own variables, and dpkg's below
+# The first of this machine's sources for its release; whatever mirror that is.
+own_mirror() {
+  # shellcheck disable=SC2016 # apt's own variables
   apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Identifier: Packages' |
-    awk -v suite="$suite" '$2 == suite && $3 == "main" { print $1, suite; exit }'
+    awk -v suite="$1" '$2 == suite && $3 == "main" { print $1; exit }' |
+    grep . || die "no apt source for this machine's release; see /etc/apt/sources.list.d"
 }
 
+# make_root SUITE
 make_root() {
-  local url suite
-  read -r url suite < <(main_source) || die "no apt source for this machine's release; see /etc/apt/sources.list.d"
+  local suite=$1 archive own_suite
+  # shellcheck source=/dev/null
+  own_suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
   say "a clean root of $suite"
-  # Packages that were fetched once are not fetched again.
-  mkdir -p "$PWD/build/package-cache"
-  debootstrap --variant=minbase --cache-dir="$PWD/build/package-cache" "$suite" "$root" "$url" >"$work/debootstrap.log" ||
-    die "debootstrap failed"
-  copy_apt_sources
+  [ "$suite" != "$own_suite" ] || CALIBRD_DEBIAN_MIRROR=${CALIBRD_DEBIAN_MIRROR:-$(own_mirror "$suite")}
+  archive=$(make_root_archive "$suite" 2>"$work/debootstrap.log") || die "debootstrap failed"
+  mkdir "$root" && tar -C "$root" -xf "$archive"
+  [ "$suite" != "$own_suite" ] || copy_apt_sources
+  copy_authorities
   mount -t proc proc "$root/proc"
   echo '#!/bin/sh
 exit 101' >"$root/usr/sbin/policy-rc.d" # nothing is started on installation
@@ -71,6 +74,9 @@ copy_apt_sources() {
   cp -aL /etc/apt/. "$root/etc/apt/"
   mkdir -p "$root/usr/share/keyrings"
   cp -aL /usr/share/keyrings/. "$root/usr/share/keyrings/"
+}
+
+copy_authorities() {
   cp -aL /etc/ssl/certs /etc/resolv.conf "$work/" 2>/dev/null || true
   mkdir -p "$root/etc/ssl" && cp -a "$work/certs" "$root/etc/ssl/"
   [ ! -f "$work/resolv.conf" ] || cp "$work/resolv.conf" "$root/etc/resolv.conf"
@@ -86,7 +92,19 @@ inventory() {
     -o -path ./var/log -o -path ./tmp \) -prune -o -print | sort)
 }
 
+# As dpkg meets it when it upgrades: another version, with other defaults.
+make_earlier() {
+  dpkg-deb -R "$deb" "$work/parts"
+  sed -i 's/^Version: .*/Version: 0.0.1-1/' "$work/parts/DEBIAN/control"
+  echo '# A default of an earlier version.' >>"$work/parts/etc/calibrd/calibrd.toml"
+  earlier=$work/calibrd_0.0.1-1.deb
+  dpkg-deb --root-owner-group -b "$work/parts" "$earlier" >/dev/null
+  rm -r "$work/parts"
+}
+
+# install_package FILE
 install_package() {
+  local deb=$1
   say "apt installs $(basename "$deb")"
   in_root apt-get update -qq >"$work/apt.log" 2>&1 || die "apt-get update failed"
   local dependencies
@@ -122,6 +140,7 @@ check_unit() {
 # The simulator stays outside; what it shows of itself, and the sensor's driver, are put into the root as a user would.
 bring_cell() {
   local robots=$kBuild/share/calibrd/robots folder=$root/srv/cell
+  cmake --build "$kBuild" --target calibrd-sim calibrd_sim demo_robot >"$work/build.log" 2>&1 || die "no simulator: $(tail -n 3 "$work/build.log")"
   mkdir -p "$folder/openni/OpenNI2/Drivers"
   cp -r "$robots/demo_arm7" "$folder/demo_arm7"
   cp "$kBuild/lib/calibrd-sim-openni/OpenNI2/Drivers/libcalibrd_sim.so.0" "$folder/openni/OpenNI2/Drivers/"
@@ -132,15 +151,20 @@ bring_cell() {
   pids+=($!)
   wait_for 60 "the simulator" test -f "$work/ready"
   chmod -R a+rX "$folder"
+}
+
+# As an integrator would: dpkg must leave it alone, and purge must remove it.
+edit_configuration() {
+  local port
   port=$(python3 -c 'import socket; print(socket.create_server(("127.0.0.1", 0)).getsockname()[1])')
-  # Edited as an integrator would: dpkg must leave it alone, and purge must remove it.
+  api=http://127.0.0.1:$port
   sed -i -e "s|^# port = 8080|port = $port|" -e 's|^urdf = .*|urdf = "/srv/cell/demo_arm7/urdf/demo_arm7.urdf"|' \
     -e 's|^host = .*|host = "127.0.0.1"|' -e "s|^# port = 50241.*|port = $(sed -n 's/.*controller=127.0.0.1:\([0-9]*\).*/\1/p' "$work/ready")|" \
     -e 's|^# uri = .*|driver_directory = "/srv/cell/openni"|' "$root/etc/calibrd/calibrd.toml"
+  cp "$root/etc/calibrd/calibrd.toml" "$work/edited.toml"
 }
 
-run_daemon() {
-  say "the daemon runs as its user"
+start_daemon() {
   ! as_daemon "${kHealthcheck[@]}" 2>"$work/healthcheck.log" || die "something answers before the daemon runs"
   # Not by as_daemon: a function in the background is a shell, whose end is not the daemon's.
   env -i "${kEnvironment[@]}" CALIBRD_SIM_WORLD=/srv/cell/world chroot "$root" "${kAsDaemon[@]}" \
@@ -149,14 +173,25 @@ run_daemon() {
   watched=$! && pids+=("$watched")
   wait_for 60 "life" as_daemon "${kHealthcheck[@]}"
   wait_for 60 "robot and sensor" as_daemon "${kHealthcheck[@]}" --ready
-  for path in livez readyz; do
-    [ "$(curl -sS -o /dev/null -w '%{http_code}' "http://127.0.0.1:$port/$path")" = 200 ] || die "/$path is not 200"
-  done
   [ "$(stat -c %u "/proc/$watched")" = "$(in_root id -u calibrd)" ] || die "it does not run as its user"
   in_root stat -c %U /var/lib/calibrd/calibrd.db | grep -qx calibrd || die "it keeps no database of its own"
+}
+
+stop_daemon() {
   kill -TERM "$watched"
   wait "$watched" || die "it did not end well"
   watched=''
+}
+
+upgrade() {
+  say "apt upgrades it"
+  # What unattended upgrades are told where the default and the administrator have both changed a file.
+  in_root apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-confold "/tmp/deb/$(basename "$deb")" \
+    >>"$work/apt.log" 2>&1 || die "apt could not upgrade it"
+  # shellcheck disable=SC2016
+  [ "$(in_root dpkg-query -W -f '${Version}' calibrd)" = "$(dpkg-deb -f "$deb" Version)" ] || die "it is still the earlier version"
+  cmp "$work/edited.toml" "$root/etc/calibrd/calibrd.toml" || die "the upgrade has changed the configuration"
+  [ -f "$root/etc/calibrd/calibrd.toml.dpkg-dist" ] || die "the new defaults are nowhere"
 }
 
 purge() {
@@ -170,25 +205,45 @@ purge() {
   fi
 }
 
-case ${1:-} in '' | --keep | --build-only) ;; *) die "unknown option '$1'. Options: --keep, --build-only" ;; esac
+case "${1:-} $#" in
+  ' 0' | '--build-only 1') ;;
+  -* | *' 1') sed -n '7,12s/^# *//p' "$0" >&2 && exit 2 ;;
+esac
 if [ "${1:-}" = --build-only ]; then
   build
   echo "$deb"
   exit
 fi
 [ "$(id -u)" = 0 ] || die "a root of its own takes root: sudo scripts/test_package.sh"
-command -v debootstrap >/dev/null || die "no debootstrap: apt-get install debootstrap"
-[ "${1:-}" != --keep ] || keep=1
+for tool in debootstrap curl jq; do command -v $tool >/dev/null || die "no $tool: apt-get install $tool"; done
 work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-package.XXXXXX")
 root=$work/root
 trap clean_up EXIT
 trap 'exit 130' INT TERM
-build
-say "built $(basename "$deb"), $(($(stat -c %s "$deb") / 1024)) KiB"
-make_root
-install_package
+if [ $# = 0 ]; then
+  build
+  # shellcheck source=/dev/null
+  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+else
+  deb=$1 suite=$2
+  [ -f "$deb" ] || die "there is no $deb"
+fi
+say "$(basename "$deb"), $(($(stat -c %s "$deb") / 1024)) KiB"
+make_root "$suite"
+make_earlier
+mkdir -p "$root/tmp/deb" && cp "$deb" "$root/tmp/deb/"
+install_package "$earlier"
 check_unit
 bring_cell
-run_daemon
+edit_configuration
+say "the daemon runs as its user"
+start_daemon
+calibrate
+stop_daemon
+upgrade
+start_daemon
+find_pose_again
+say "the upgraded daemon serves the pose that the earlier one found"
+stop_daemon
 purge
 say "passed"
