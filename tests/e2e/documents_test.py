@@ -15,6 +15,7 @@ from pathlib import Path
 from cell import BUILD, OF_THIS_BUILD, SENSOR, SOURCE, CellTest, call, wait_until
 
 DOCUMENTS = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").glob("*.md"))]
+OF_THE_SIMULATOR = SOURCE / "docs/simulator.md"
 FIRST, SECOND = "20261122T014643-192c11", "20261122T020110-77ab03"  # the calibrations of the examples
 ELSEWHERE = (
     (r"(sudo )?scripts/\S+", "minutes to hours each; that there is such a script is looked at here"),
@@ -23,6 +24,8 @@ ELSEWHERE = (
     (r"calibrd healthcheck", "healthcheck_test.py"),
     (r"calibrd-collector ", "tests/fleet"),
     (r"xacro ", "is not ours"),
+    (r"git clone https://github.com/OpenKinect|cmake .*OPENNI2_DRIVER|.*/opt/(freenect2|kinect2)", "is not ours; needs the network"),
+    (r"build/release/bin/calibrd-sim run ", "every test of tests/e2e starts it"),
     (r"curl .*http://cell7:", "security_test.py"),
     (r"curl .*/robot/motions|jq .*next_posture_of", "motion_test.py"),
     (r"curl .*\"left\", \"right\"", "several_sensors_test.py"),
@@ -32,9 +35,10 @@ ENDS = (
     (r"curl -X DELETE .*/calibrations/", 22, "status 409"),  # it has ended
     (r"curl .*Idempotency-Key", 22, "status 409"),           # the one asked for just before still runs
     (r"build/release/bin/calibrd serve --config my_cell.toml --check-config", 2, "/etc/calibrd/robot/robot.urdf"),  # not filled in
-    (r"build/release/bin/calibrd-sensor --list", 3, "no depth sensor matches"),
+    (r"(build/release/bin/)?calibrd-sensor --list", 3, "no depth sensor matches"),
     (r"curl -N", 28, ""),                                    # has no end
 )
+SHORTENED = {"--scenes 100": "--scenes 1", "--scenes 60": "--scenes 1"}
 LONGEST_S = 150
 
 
@@ -56,14 +60,20 @@ def blocks_of(document: Path) -> list[Block]:
 
 
 class Documents(CellTest):
-    def setUp(self):
-        super().setUp()
+    """`real`: what stands in the documents, and what it is in this cell."""
+
+    def start_cell(self) -> None:
         simulator = self.simulate()
         simulator.hurry()
         self.daemon = self.serve(simulator, "drift.healing=off").wait_ready()
         ids = [self.daemon.calibrate(postures=postures)["id"] for postures in (3, 2)]
         self.real = {FIRST: ids[0], SECOND: ids[1], "127.0.0.1:8080": f"127.0.0.1:{self.daemon.port}",
-                     "/etc/calibrd/calibrd.toml": str(SOURCE / "config/demo.toml")}
+                     "/etc/calibrd/calibrd.toml": str(SOURCE / "config/demo.toml"), **SHORTENED}
+
+    def start_simulator(self) -> None:
+        simulator = self.simulate()
+        self.real = {"127.0.0.1:8078": f"127.0.0.1:{simulator.control_port}", "/tmp/calibrd.world": str(simulator.world_file),
+                     "/tmp/scenes": str(self.folder / "scenes"), **SHORTENED}
 
     def place(self, document: Path) -> Path:
         """A folder that looks like the repository's root after a build."""
@@ -77,10 +87,10 @@ class Documents(CellTest):
         return root
 
     def environment(self, root: Path) -> dict[str, str]:
-        settings = {"CALIBRD_SERVER__PORT": str(self.daemon.port), "CALIBRD_ROBOT__URDF": OF_THIS_BUILD[0].split("=", 1)[1],
-                    "CALIBRD_SERVER__TOKENS_FILE": str(root / "tokens.json")}
-        if root.name not in ("security", "operations"):
-            settings = {}
+        settings = {}
+        if root.name in ("security", "operations"):
+            settings = {"CALIBRD_SERVER__PORT": str(self.daemon.port), "CALIBRD_ROBOT__URDF": OF_THIS_BUILD[0].split("=", 1)[1],
+                        "CALIBRD_SERVER__TOKENS_FILE": str(root / "tokens.json")}
         return {**os.environ, **settings, "HOME": str(root), "PATH": f"{BUILD / 'bin'}:{os.environ['PATH']}"}
 
     def put_real(self, text: str) -> str:
@@ -141,17 +151,32 @@ class Documents(CellTest):
             wait_until("the calibration has ended", lambda: not self.daemon.pose()["job"])
         wait_until("the pose is valid", lambda: self.daemon.pose()["valid"], 60)
 
-    def test_every_command_of_the_documentation_works(self):
+    def check(self, document: Path, before_each=lambda: None) -> None:
         kinds = {"sh": self.check_shell, "python": self.check_python, "cpp": self.check_cpp}
+        blocks = blocks_of(document)
+        if not blocks:
+            return
+        root = self.place(document)
+        for block in blocks:
+            with self.subTest(block.where):
+                before_each()
+                kinds[block.language](root, block)
+
+    def test_every_command_of_the_documentation_works(self):
+        self.start_cell()
         for document in DOCUMENTS:
-            blocks = blocks_of(document)
-            if not blocks:
-                continue
-            root = self.place(document)
-            for block in blocks:
-                with self.subTest(block.where):
-                    self.quiet()
-                    kinds[block.language](root, block)
+            if document != OF_THE_SIMULATOR:
+                self.check(document, self.quiet)
+
+    def test_every_command_that_changes_the_simulated_cell_works(self):
+        self.start_simulator()
+        self.check(OF_THE_SIMULATOR)
+
+    def test_no_command_hides_from_this_test(self):
+        hidden = re.compile(r"^    +(?:calibrd|scripts/|curl|cmake|ctest|sudo|docker|git|build/)\S* .*$", re.MULTILINE)
+        for document in DOCUMENTS:
+            text = re.sub(r"^```.*?^```", "", document.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+            self.assertEqual(hidden.findall(text), [], f"{document.name}: commands stand between ```sh and ```")
 
 
 if __name__ == "__main__":
