@@ -34,7 +34,8 @@ void DriftWatch::mark_carried() {
   }
 }
 
-/// The first frames make the map better than the few views it was learnt from, as long as nothing moves.
+/// The first frames make the map better than the few views it was learnt from, as long as nothing moves; one
+/// in which a single thing has slid may be of a sensor that has.
 void DriftWatch::refine(const BackgroundObservation& observation, double now_s) {
   if (is_refined_) return;
   if (now_s - learnt_s_ > kRefine_s) {
@@ -42,7 +43,8 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
     map_.fit_planes();
     return matcher_.refresh();
   }
-  if (!observation.has_evidence || observation.realigned || is_doubtful() || moved_) return;
+  if (!observation.has_evidence || observation.realigned || observation.unsupported) return;
+  if (is_doubtful() || dispute_.is_open() || moved_) return;
   std::vector<std::uint8_t> chosen(matcher_.states().size());
   std::ranges::transform(matcher_.states(), chosen.begin(),
                          [](CellState state) -> std::uint8_t { return state == CellState::same ? 1 : 0; });
@@ -57,7 +59,7 @@ void DriftWatch::refine(const BackgroundObservation& observation, double now_s) 
 void DriftWatch::absorb(double now_s) {
   if (now_s - absorbed_s_ < kAbsorbEvery_s) return;
   absorbed_s_ = now_s;
-  if (moved_ || is_doubtful() || !is_known_to_stand()) return;
+  if (moved_ || is_doubtful() || is_unsettled() || !is_known_to_stand()) return;
   take(scene_.unchanged_for(settings_.absorb_s));
   absorb_what_was_pushed(now_s);
 }

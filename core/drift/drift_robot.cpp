@@ -34,7 +34,7 @@ void DriftWatch::add_check(const PoseCheck& check, std::span<const double> joint
   robot_word_.add(check, joints_rad, now_s);
   if (dispute_.is_open() && check.enough_evidence) {
     const double preference = preference_of(check, dispute_.turn_shift());
-    dispute_.hear(check.agrees ? preference : std::min(preference, 0.0), robot_word_.postures(), now_s);
+    dispute_.hear(check.agrees ? preference : std::min(preference, 0.0), joints_rad, now_s);
   }
   if (robot_word_.is_against_no_more()) model_wrong_ = false;
   if (model_wrong_ || moved_) return;

@@ -54,7 +54,9 @@ void DriftWatch::set_pose(const Pose& T_base_sensor) {
 }
 
 void DriftWatch::learn(std::span<const View> views) {
-  set_background(learn_background(robot_, camera_, views, T_base_sensor_));
+  if (moved_) return;  // it was learnt from elsewhere
+  auto background = learn_background(robot_, camera_, views, T_base_sensor_);
+  if (!background.is_empty()) set_background(std::move(background));
 }
 
 void DriftWatch::set_background(BackgroundMap background) {
@@ -230,7 +232,7 @@ void DriftWatch::follow_loss(const BackgroundObservation& observation, double no
   if (!robot_word_.agrees_since(lost_since_s_, frame_s_))
     moved_ = true;
   else
-    denied_s_ = now_s;
+    on_denial();
 }
 
 void DriftWatch::describe(const BackgroundObservation& observation) {

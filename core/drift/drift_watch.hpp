@@ -40,7 +40,7 @@ class DriftWatch {
   /// Another pose, its background not known yet.
   void set_pose(const Pose& T_base_sensor);
   /// The background as the sensor saw it where the pose holds: views it stood still for, of a robot in
-  /// different postures (one shows nothing behind the robot).
+  /// different postures (one shows nothing behind the robot). Where they show none, nothing changes.
   void learn(std::span<const View> views);
   /// The background as it was learnt before, for this very pose.
   void set_background(BackgroundMap background);
@@ -55,8 +55,7 @@ class DriftWatch {
   const DriftReport& report() const { return report_; }
   /// A comparison with the robot would help to decide now.
   bool wants_check() const {
-    const bool is_unsettled = dispute_.is_open() && !dispute_.is_denied();
-    return is_doubtful() || is_unsettled || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
+    return is_doubtful() || is_unsettled() || (robot_word_.has_doubt() && !model_wrong_ && !moved_);
   }
   /// The background has been in view, where it was, and has shown every direction, for some frames on end.
   bool is_in_place() const;
@@ -69,6 +68,8 @@ class DriftWatch {
   /// model; or one thing in view says that the sensor has slid, and the robot has not denied it: while that
   /// lasts no posture that agrees makes the pose good.
   bool is_contested() const;
+  /// One thing in view says that the sensor has slid, and the robot has not denied it yet.
+  bool is_unsettled() const { return dispute_.is_open() && !dispute_.is_denied(); }
   /// The sensor was away: what was seen before says nothing of where it is now.
   void on_gap();
 

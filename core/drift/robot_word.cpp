@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/drift/same_posture.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -12,15 +14,11 @@ constexpr double kOff_s = 0.5;  // one comparison alone says nothing of a second
 /// A comparison of a good model stays below 2.2 standard deviations of what noise, model and joint zeros
 /// explain, in nearly every posture.
 constexpr double kAllowance = 2.7, kPostureWeight = 2;
-constexpr double kMostPerPosture = 4, kOtherPosture_rad = 0.05;
+constexpr double kMostPerWord = 4;
 /// What comparisons in one motion, in which its frames and joints may lag, have against a pose is one word.
 constexpr double kLeastDoubt_s = 1;
 constexpr std::size_t kMostDoubts = 6;
 constexpr double kUnexplained = 6;  // standard deviations, where so little agrees that none can be told
-
-bool is_same_posture(std::span<const double> a, std::span<const double> b) {
-  return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) < kOtherPosture_rad; });
-}
 
 }  // namespace
 
@@ -33,7 +31,6 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
     posture_.assign(joints.begin(), joints.end());
     before_posture_ = std::min(statistic_, kLimit);  // what is mended shows soon
     posture_sigmas_ = posture_checks_ = 0;
-    ++postures_;
     mean_.end_posture(now_s);
   }
   newest_ = check;
@@ -43,7 +40,7 @@ void RobotWord::add(const PoseCheck& check, std::span<const double> joints, doub
   ++posture_checks_;
   posture_sigmas_ += (sigmas - posture_sigmas_) / posture_checks_;
   const double word =
-      std::clamp(kPostureWeight * (posture_sigmas_ - kAllowance), -kMostPerPosture, kMostPerPosture);
+      std::clamp(kPostureWeight * (posture_sigmas_ - kAllowance), -kMostPerWord, kMostPerWord);
   if (statistic_ <= 0) doubt_since_s_ = now_s;
   statistic_ = std::max(0.0, before_posture_ + word);
 }

@@ -27,8 +27,6 @@ class RobotWord {
   bool agrees_within(double seconds, double now_s) const;
   /// There is one that is not older than this.
   bool has_spoken_within(double seconds, double now_s) const { return newest_ && age_s(now_s) < seconds; }
-  /// How often it has come to another posture.
-  int postures() const { return postures_; }
   /// The newest one disagrees, and is of this very moment.
   bool is_off(double now_s) const;
 
@@ -59,7 +57,7 @@ class RobotWord {
   double statistic_ = 0, before_posture_ = 0, doubt_since_s_ = 0;
   std::vector<double> posture_;  // that is looked at
   double posture_sigmas_ = 0;    // mean of its comparisons
-  int posture_checks_ = 0, postures_ = 0;
+  int posture_checks_ = 0;
   std::vector<PoseCheck> doubts_;  // of postures that it has left
   PostureMean mean_;
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/drift/same_posture.hpp"
+
 namespace calibrd {
 namespace {
 
@@ -11,9 +13,11 @@ constexpr double kNewestShift = 1.0 / 30;  // weight of a frame in the mean
 /// Noise alone looks like it in one frame of twenty: most of the last frames must, and few end it.
 constexpr double kOfFrames = 0.1, kOpens = 0.5, kEnds = 0.2;
 constexpr double kSame_m = 1e-3, kSame_rad = 1e-3;
-/// What one posture can say at most, and all together; what denies, and what several must say to affirm.
-constexpr double kMostPerPosture = 4, kMostHeard = 12, kDenied = 2, kAffirmed = 9;
-constexpr int kAffirmingPostures = 3;
+/// What one posture can say at most; what denies, and what several must say to affirm. Only the newest
+/// postures are heard.
+constexpr double kMostPerPosture = 4, kDenied = 2, kAffirmed = 9;
+constexpr std::size_t kMostVoices = 12;
+constexpr std::size_t kAffirmingPostures = 3;
 /// Comparisons in one motion, in which frames and joints may lag, err alike, too.
 constexpr double kLeastAffirmed_s = 1.5;
 /// What comes and goes so quickly is one dispute; later it may be another thing that looks the same.
@@ -41,30 +45,33 @@ void ShiftDispute::add(const CellWindow& window, const Vector6d& turn_shift, dou
   since_s_ = now_s;
 }
 
-double ShiftDispute::voice() const { return std::clamp(heard_.mean, -kMostPerPosture, kMostPerPosture); }
+double ShiftDispute::heard() const {
+  double sum = 0;
+  for (const Voice& voice : heard_.voices) sum += std::clamp(voice.mean, -kMostPerPosture, kMostPerPosture);
+  return sum;
+}
 
-void ShiftDispute::hear(double preference, int posture, double now_s) {
-  if (heard_.comparisons > 0 && !is_same(turn_shift_, heard_.of)) heard_ = {};
-  if (heard_.comparisons == 0) {
+void ShiftDispute::hear(double preference, std::span<const double> joints, double now_s) {
+  if (!heard_.voices.empty() && !is_same(turn_shift_, heard_.of)) heard_ = {};
+  if (heard_.voices.empty()) {
     heard_.of = turn_shift_;
     heard_.since_s = now_s;
   }
   heard_.newest_s = now_s;
-  if (posture != heard_.posture) {
-    heard_.before = std::clamp(heard(), -kMostHeard, kMostHeard);
-    heard_.posture = posture;
-    heard_.mean = 0;
-    heard_.comparisons = 0;
-    ++heard_.postures;
+  auto voice = std::ranges::find_if(
+      heard_.voices, [&](const Voice& other) { return is_same_posture(other.joints, joints); });
+  if (voice == heard_.voices.end()) {
+    if (heard_.voices.size() == kMostVoices) heard_.voices.erase(heard_.voices.begin());
+    voice = heard_.voices.insert(heard_.voices.end(), {{joints.begin(), joints.end()}});
   }
-  ++heard_.comparisons;
-  heard_.mean += (preference - heard_.mean) / heard_.comparisons;
+  ++voice->comparisons;
+  voice->mean += (preference - voice->mean) / voice->comparisons;
 }
 
 bool ShiftDispute::is_denied() const { return heard() >= kDenied && is_same(turn_shift_, heard_.of); }
 
 bool ShiftDispute::is_affirmed() const {
-  return is_open() && heard() <= -kAffirmed && heard_.postures >= kAffirmingPostures &&
+  return is_open() && heard() <= -kAffirmed && heard_.voices.size() >= kAffirmingPostures &&
          heard_.newest_s - heard_.since_s >= kLeastAffirmed_s;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
+#include <vector>
+
 #include "core/drift/background_match.hpp"
 #include "core/geometry/pose.hpp"
 
@@ -16,10 +19,10 @@ class ShiftDispute {
   void add(const CellWindow& window, const Vector6d& turn_shift, double now_s);
   /// A frame does not: it shows `turn_shift` within its noise. A few of these end nothing.
   void add_none(const Vector6d& turn_shift, double now_s);
-  /// By how much (−2 log likelihood) a comparison with the robot, in the `posture`-th posture that was looked
-  /// at, speaks for a sensor that stands rather than for one that has slid so. What was said counts while the
-  /// shift stays what it is.
-  void hear(double preference, int posture, double now_s);
+  /// By how much (−2 log likelihood) a comparison with the robot, which stood as `joints` say, speaks for a
+  /// sensor that stands rather than for one that has slid so. What was said counts while the shift stays what
+  /// it is; a posture that the robot comes back to has no further voice.
+  void hear(double preference, std::span<const double> joints, double now_s);
   /// The robot says that the sensor stands ...
   bool is_denied() const;
   /// ... or, in several postures, that it has slid.
@@ -37,15 +40,18 @@ class ShiftDispute {
   const Vector6d& turn_shift() const { return turn_shift_; }  ///< mean of the last frames
 
  private:
+  struct Voice {
+    std::vector<double> joints;
+    double mean = 0;
+    int comparisons = 0;
+  };
   struct Heard {
     Vector6d of = Vector6d::Zero();  // the shift that it is said of
-    int posture = -1, postures = 0, comparisons = 0;
-    double mean = 0, before = 0;  // of this posture, and all of those before
+    std::vector<Voice> voices;
     double since_s = 0, newest_s = 0;
   };
   void follow(const Vector6d& turn_shift);
-  double voice() const;
-  double heard() const { return heard_.before + voice(); }
+  double heard() const;
 
   double share_ = 0;  // of the last frames, that show it
   int frames_ = 0;    // that turn_shift_ is the mean of

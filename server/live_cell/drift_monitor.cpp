@@ -36,7 +36,7 @@ void DriftMonitor::set_pose(const Pose& T_base_sensor, std::shared_ptr<const Bac
   has_pose_ = true;
   newest_ = fresh_;
   background_ = background && !background->is_empty() ? std::move(background) : nullptr;
-  in_place_ = wants_check_ = out_of_sight_ = contested_ = false;
+  in_place_ = wants_check_ = out_of_sight_ = contested_ = unsettled_ = false;
   quarters_seen_ = 0;
 }
 
@@ -80,15 +80,18 @@ void DriftMonitor::add_frame(const View& frame) {
   wants_check_ = watch_->wants_check();
   out_of_sight_ = watch_->is_out_of_sight();
   contested_ = watch_->is_contested();
+  unsettled_ = watch_->is_unsettled();
   stamp_ = time_of(frame.stamp_s);
 }
 
-/// A lens that is dark for a moment only, as one that is touched, is no sensor that was away.
+/// A sensor that goes dark, or sees again, was away meanwhile; one that is touched is dark for a moment only.
+/// Where it stays dark, the robot alone can tell, as where the background is hidden.
 void DriftMonitor::count_frame() {
+  const bool was_dark = frames_dark_ >= kFramesToShow;
   frames_dark_ = watch_->is_dark() ? frames_dark_ + 1 : 0;
-  if (frames_dark_ >= kFramesToShow)
+  if (was_dark ? frames_dark_ == 0 : frames_dark_ == kFramesToShow)
     quarters_seen_ = 0;
-  else if (frames_dark_ == 0)
+  else if (was_dark || frames_dark_ == 0)
     quarters_seen_ += watch_->innovation() ? kHiddenFramesForOne : 1;
 }
 
@@ -115,7 +118,9 @@ void DriftMonitor::add_check(const View& frame, const PoseCheck& check) {
   if (check.enough_evidence && !check.agrees) passed_.clear();
   if (check.agrees && !watch_->has_background()) keep_for_background(frame);
   const std::lock_guard lock(mutex_);
-  if (!order_) contested_ = watch_->is_contested();
+  if (order_) return;
+  contested_ = watch_->is_contested();
+  unsettled_ = watch_->is_unsettled();
 }
 
 void DriftMonitor::keep_for_background(const View& frame) {
@@ -156,6 +161,11 @@ bool DriftMonitor::is_out_of_sight() const {
 bool DriftMonitor::is_contested() const {
   const std::lock_guard lock(mutex_);
   return contested_;
+}
+
+bool DriftMonitor::is_unsettled() const {
+  const std::lock_guard lock(mutex_);
+  return unsettled_;
 }
 
 bool DriftMonitor::wants_check() const {

@@ -37,6 +37,8 @@ class DriftMonitor {
   bool is_out_of_sight() const;
   /// As DriftWatch::is_contested(), of the last frame or check.
   bool is_contested() const;
+  /// As DriftWatch::is_unsettled().
+  bool is_unsettled() const;
   bool wants_check() const;
   /// Enough frames were seen since the pose was set, the sensor was back, or the lens dark, for a moved
   /// sensor to show; also while no background is known that could tell. Before, a check against the robot
@@ -73,7 +75,7 @@ class DriftMonitor {
   bool has_pose_ = false;
   DriftReport newest_;
   std::shared_ptr<const BackgroundMap> background_;
-  bool in_place_ = false, wants_check_ = false, out_of_sight_ = false, contested_ = false;
+  bool in_place_ = false, wants_check_ = false, out_of_sight_ = false, contested_ = false, unsettled_ = false;
   int quarters_seen_ = 0;  // of frames, since the pose was set, or the sensor lost
   int frames_dark_ = 0;    // on end
   Clock::time_point stamp_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "api/problem/api_error.hpp"
+#include "core/calibration/verdict.hpp"
 #include "core/drift/moved_meanwhile.hpp"
 #include "server/live_cell/live_cell.hpp"
 
@@ -60,6 +61,7 @@ void LiveCell::reject_if_moved(const CameraModel& camera, std::span<const View> 
   const std::string witness =
       move->witness == MovedMeanwhile::Witness::robot ? "the robot" : "what stands around the robot";
   result.verdict = Verdict::rejected;
+  withhold_pose(result);
   result.reasons.push_back(
       {"sensor_moved_meanwhile",
        "the sensor seems to have moved while its postures were collected: between posture " +

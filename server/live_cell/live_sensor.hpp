@@ -131,6 +131,7 @@ class LiveSensor {
   void forget_evidence(bool was_plausible);
   void notice_move();
   bool is_check_due(Clock::time_point now) const;
+  bool is_contested() const;
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);

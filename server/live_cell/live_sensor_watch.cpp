@@ -17,7 +17,7 @@ void LiveSensor::watch(const Sighting& sighting) {
   if (has_moved && !has_moved_) moved_at_ = Clock::now();
   has_moved_ = has_moved;
   if (has_moved) watch_.on_sensor_moved();
-  watch_.on_contested(monitor_->is_contested());
+  watch_.on_contested(is_contested());
   // While a single thing shows a slide, a frame whose noise hides that slide proves nothing: so this comes
   // first.
   if (monitor_->is_out_of_sight())
@@ -25,6 +25,12 @@ void LiveSensor::watch(const Sighting& sighting) {
   else if (monitor_->is_in_place())
     watch_.on_background_in_place(sighting.stamp);
   forget_evidence(was_plausible);
+}
+
+/// A pose that is not good yet does not become so before a slide that one thing in view shows is settled.
+bool LiveSensor::is_contested() const {
+  return monitor_->is_contested() ||
+         (monitor_->is_unsettled() && watch_.state() != api::PoseState::calibrated);
 }
 
 /// It was found where the sensor stood before.
@@ -68,8 +74,11 @@ void LiveSensor::check(const Sighting& sighting) {
   if (number != pose_number_) return;
   if (monitor_) monitor_->add_check(sighting.view, checked);
   const bool was_plausible = watch_.is_plausible();
-  if (monitor_) watch_.on_contested(monitor_->is_contested());
+  if (monitor_) watch_.on_contested(is_contested());
+  const bool was_good = watch_.state() == api::PoseState::calibrated;
   watch_.on_check(checked, sighting.stamp);  // not now: a check proves nothing of later than its frame
+  // What was found of frames before is no better than the pose that these speak against.
+  if (was_good && checked.enough_evidence && !checked.agrees) moved_at_ = Clock::now();
   forget_evidence(was_plausible);
 }
 

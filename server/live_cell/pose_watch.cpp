@@ -113,6 +113,7 @@ void PoseWatch::disagree(Clock::time_point now) {
   const bool stands = in_place_at_ && now - *in_place_at_ < kInPlace;
   state_ = lasts && !stands && disagreements_ >= settings_.disagreements_to_drift ? PoseState::drifted
                                                                                   : PoseState::unverified;
+  if (stands) disagreements_ = 0;  // they are of the model, and say nothing of what comes
   drift_ = Drift::robot_off;
   doubt_ = stands ? Doubt::robot_off : Doubt::disagreement;
 }

@@ -21,9 +21,9 @@ struct PoseWatchSettings {
 /// Decides what a sensor's pose is worth from the checks of it. Without I/O; not thread-safe.
 ///
 /// One check that disagrees is enough to serve the pose as valid no longer, and one that agrees well, or many
-/// that agree only just, brings it back. Only a row of disagreements calls it drifted, and that stays: that a pose which is off agrees now
-/// and then, in one posture or another, does not make it true. Only another pose, or the same one set again,
-/// ends it.
+/// that agree only just, brings it back. Only a row of disagreements calls it drifted, and that stays: that a
+/// pose which is off agrees now and then, in one posture or another, does not make it true. Only another
+/// pose, or the same one set again, ends it.
 class PoseWatch {
  public:
   explicit PoseWatch(const PoseWatchSettings& settings) : settings_(settings) {}

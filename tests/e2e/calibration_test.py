@@ -62,6 +62,7 @@ class Calibration(CellTest):
         job = daemon.wait_calibration(location)
         self.assertEqual(job["status"], "failed", job)
         self.assertIn("sensor_moved_meanwhile", [reason["code"] for reason in job["result"]["reasons"]], job)
+        self.assertNotIn("T_base_sensor", job["result"])
         self.assertEqual(daemon.pose()["state"], "uncalibrated")
         self.assertEqual(daemon.calibrate(postures=6)["status"], "succeeded", "once it stands")
 

@@ -239,5 +239,12 @@ TEST_F(BeforeAWall, ABoardHeldBeforeItIsNoKnock) {
   EXPECT_EQ(watch_for(5), DriftVerdict::something_in_front);
 }
 
+TEST_F(RobotsWord, ViewsThatShowNoBackgroundChangeNothing) {
+  watch_for(2);
+  watch_.learn({});
+  EXPECT_TRUE(watch_.has_background());
+  EXPECT_EQ(watch_for(0.5), DriftVerdict::in_place);
+}
+
 }  // namespace
 }  // namespace calibrd

@@ -134,6 +134,25 @@ TEST_F(PushedBox, WhatOnePostureDeniesOthersMayAffirm) {
   EXPECT_EQ(watch_for(0.1), DriftVerdict::sensor_moved);
 }
 
+TEST_F(PushedBox, APostureThatComesBackHasNoFurtherVoice) {
+  watch_for(4);
+  moved_.tail<3>() = kSlid_m * true_T_base_sensor().linear().col(0);
+  const auto all = postures(2);
+  for (int visit = 0; visit < 8; ++visit) {
+    watch_for(0.5);
+    watch_.add_check(robot_seen(moved_), all[static_cast<std::size_t>(visit % 2)], now_s_);
+  }
+  EXPECT_NE(watch_for(0.1), DriftVerdict::sensor_moved);
+  EXPECT_TRUE(watch_.is_contested());
+}
+
+TEST_F(PushedBox, ASensorThatSlidBeforeItIsWatchedIsNotLearntFromThere) {
+  moved_.tail<3>() = 0.004 * true_T_base_sensor().linear().col(0);
+  watch_for(5);
+  EXPECT_TRUE(watch_.is_unsettled());
+  EXPECT_FALSE(watch_.is_in_place());
+}
+
 TEST_F(PushedBox, ASlideThatOneThingAloneShowsIsNoEvidenceThatTheSensorStands) {
   watch_for(4);
   EXPECT_TRUE(watch_.is_in_place());

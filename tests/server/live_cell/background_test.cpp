@@ -127,6 +127,17 @@ TEST_F(Background, AfterTheDarkItIsLookedAtBeforeTheRobotIsBelieved) {
   EXPECT_GE(frames_sent_ - frames, 10U) << "it may have been moved meanwhile";
 }
 
+TEST_F(Background, ThatStaysDarkLeavesTheRobotToTell) {
+  calibrate();
+  repeat_until([&] { is_known(); },
+               [&] { return cell_->drift("eye")->now.verdict == DriftVerdict::in_place; });
+  checks_have_evidence_ = false;
+  wall_mm_ = 0;
+  watch_until([&] { return pose().state == api::PoseState::unverified; });
+  checks_have_evidence_ = true;
+  watch_until([&] { return pose().valid; });
+}
+
 TEST_F(Background, OfARejectedCalibrationIsNone) {
   on_calibrate_ = [](auto, const auto&) { return CalibrationResult(); };
   const auto id = calibrate();

@@ -213,5 +213,17 @@ TEST_F(Watch, BackgroundSeenLongBeforeTheDisagreementSaysNothingOfTheRobot) {
   EXPECT_EQ(watch_.reason(at(10s)).find("joint zeros"), std::string::npos) << watch_.reason(at(10s));
 }
 
+TEST_F(Watch, WhatTheRobotHadAgainstASensorThatStoodIsNoBeginningOfDrift) {
+  watch_.set_fresh(at(0ms));
+  for (int i = 0; i < 100; ++i) {
+    watch_.on_background_in_place(at(1s + i * 100ms));
+    watch_.on_check(kDisagrees, at(1s + i * 100ms));
+  }
+  watch_.on_check(kDisagrees, at(13s));  // somebody hides the background
+  EXPECT_EQ(watch_.state(), PoseState::unverified);
+  for (int i = 1; i <= 30; ++i) watch_.on_check(kDisagrees, at(13s + i * 100ms));
+  EXPECT_EQ(watch_.state(), PoseState::drifted);
+}
+
 }  // namespace
 }  // namespace calibrd
