@@ -199,6 +199,7 @@ test("a knock is shown as drift, and what healing finds waits to be accepted", a
 
 test("what the last calibration did is drawn: before it in orange, after it in green", async () => {
   await page.locator("#show-measured").uncheck();
+  await page.getByRole("button", { name: "From the sensor" }).click(); // whatever it stands like, what it sees of the robot is in the picture
   await part(page, "compare").check();
   const slide = (share) => part(page, "slider").fill(String(share));
   await slide(0);
@@ -211,6 +212,7 @@ test("what the last calibration did is drawn: before it in orange, after it in g
   await show("4-after");
   await part(page, "compare").uncheck();
   await waitUntil("they are gone", async () => (await seen(isGreen)) < 1500);
+  await page.getByRole("button", { name: "Front" }).click();
   await page.locator("#show-measured").check();
 });
 

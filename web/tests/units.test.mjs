@@ -56,8 +56,8 @@ test("a surface that has been turned is lit from where the sun is, not from wher
   assert.equal(shadeAt(drawn, MIDDLE_U, MIDDLE_V), 300, "the sun stands at y < 0: this side is dark");
 });
 
-test("of points and surfaces the nearest is seen, whichever is drawn first", () => {
-  for (const [x, wanted] of [[0.3, 4], [-0.3, 0]])
+test("of points and surfaces the nearest is seen, whichever is drawn first; points that lie on a surface are, too", () => {
+  for (const [x, wanted] of [[0.3, 4], [-0.3, 0], [0.005, 4], [-0.005, 4], [-0.02, 0]])
     for (const order of [[0, 1], [1, 0]]) {
       const drawn = picture();
       const draw = [() => page.splat(drawn, point(x, 7), view(EYE)), () => page.drawSolid(drawn, plate(0, 300), view(EYE), EYE)];
@@ -67,11 +67,11 @@ test("of points and surfaces the nearest is seen, whichever is drawn first", () 
     }
 });
 
-test("the depth of a slanted surface is that of its points", () => {
+test("the depth of a slanted surface is that of its points, and a little more", () => {
   const slanted = { ...plate(0, 300), T_base_link: new Matrix4().makeRotationZ(0.6).multiply(new Matrix4().makeRotationY(0.4)) };
   const drawn = picture();
   page.drawSolid(drawn, slanted, view(EYE), EYE);
-  const at = new Vector3(0, 0.3, -0.2).applyMatrix4(slanted.T_base_link).applyMatrix4(view(EYE));
+  const at = new Vector3(0, 0.3, -0.2).applyMatrix4(slanted.T_base_link).add(new Vector3(-page.BEHIND_M, 0, 0)).applyMatrix4(view(EYE));
   const [u, v] = [Math.floor((at.x + 1) * 0.5 * WIDTH), Math.floor((at.y + 1) * 0.5 * HEIGHT)];
   assert.ok(Math.abs(depthAt(drawn, u, v) - (at.z + 1) / 2) < 2e-4);
 });

@@ -10,6 +10,7 @@ import { ErrorCharts } from "./error_charts";
 import { type Heat, type HeatKind, heatOf } from "./heat";
 
 const SHOWN = 20;
+const REPAINT_MS = 500;
 
 /** Every calibration of the chosen sensor, newest first: how it went, how it differs, back to it. */
 export class HistoryPanel {
@@ -19,6 +20,7 @@ export class HistoryPanel {
   private readonly compared: string[] = [];
   /** Of which button the robot has its colours. */
   private painted = "";
+  private repaintedAt = 0;
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
@@ -34,6 +36,7 @@ export class HistoryPanel {
     );
     const { state } = context;
     state.chosen.follow(() => this.paint("", null));
+    context.frames.frame.follow(() => this.repaint());
     for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
   }
 
@@ -101,6 +104,14 @@ export class HistoryPanel {
     this.context.heat.value = heat;
     for (const button of this.rows.querySelectorAll<HTMLElement>("[data-paint]"))
       button.setAttribute("aria-pressed", String(button.dataset["paint"] === name));
+  }
+
+  /** Residuals are those of the newest frame, not of the one there was when the button was pressed. */
+  private repaint(): void {
+    const now = performance.now();
+    if (this.context.heat.value?.kind !== "residual" || now - this.repaintedAt < REPAINT_MS) return;
+    this.repaintedAt = now;
+    this.context.heat.value = heatOf(this.context, "residual", null);
   }
 
   /** The two that were ticked last. */

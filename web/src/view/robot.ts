@@ -10,6 +10,8 @@ import { LIGHT_LEVELS, normalsOf, type Solid } from "./solid";
 import { SHADES } from "./splat";
 
 const UNNAMED = "#59626a";
+/** As BEHIND_M, about 2 m away; in steps of a depth buffer of 24 bits. */
+const BEHIND = { polygonOffset: true, polygonOffsetUnits: 2000 };
 const GHOST = "#35c08a";
 
 /** The robot as the daemon has it: its URDF, and of each link the surface that calibrd compares with. */
@@ -126,7 +128,7 @@ async function addSurface(client: Client, robot: URDFRobot, name: string, meshes
   const response = await client.fetch(`/api/v1/robot/links/${encodeURIComponent(name)}/mesh`);
   const geometry = new STLLoader().parse(await response.arrayBuffer());
   if (geometry.getAttribute("position").count === 0) return;
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: METAL }));
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: METAL, ...BEHIND }));
   robot.links[name]?.add(mesh);
   meshes.set(name, mesh);
 }

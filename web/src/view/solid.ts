@@ -7,6 +7,9 @@ import { DEPTH_STEPS, SHADE_BITS, type SplatPicture } from "./splat";
 /** Shades of a solid, from the dark side to full light. */
 export const LIGHT_LEVELS = 40;
 
+/** Surfaces are drawn so much deeper than they are: else of the points that lie on them noise would hide one in two. */
+export const BEHIND_M = 0.01;
+
 /** The surface of a link, in its frame. */
 export interface Solid {
   /** Nine numbers for each triangle, counter-clockwise seen from outside. */
@@ -65,7 +68,7 @@ function projection(T_clip_link: Matrix4, { width, height }: SplatPicture): Proj
     const z = corners[at + 2] as number;
     const w = a3 * x + b3 * y + c3 * z + d3;
     const half = 0.5 / w;
-    const far = (a2 * x + b2 * y + c2 * z + d2) * half + 0.5;
+    const far = (0.5 * (a2 * x + b2 * y + c2 * z + d2 + BEHIND_M)) / (w + BEHIND_M) + 0.5; // of a camera that looks along w
     into[0] = ((a0 * x + b0 * y + c0 * z + d0) * half + 0.5) * width;
     into[1] = ((a1 * x + b1 * y + c1 * z + d1) * half + 0.5) * height;
     into[2] = far * DEPTH_STEPS;
