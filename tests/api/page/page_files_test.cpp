@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "tests/api/routes/route_test.hpp"
+#include "tests/core/robot/scratch_folder.hpp"
 
 namespace calibrd::api {
 namespace {
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 /// A page of three files in a folder of its own.
 class Page : public ::testing::Test {
  protected:
-  Page() : folder_(fs::path(::testing::TempDir()) / "calibrd-page-test") {
+  Page() {
     fs::create_directories(folder_ / "assets");
     write("index.html", "<!doctype html>");
     write("assets/app-1a2b.js", "let x");
@@ -22,7 +23,6 @@ class Page : public ::testing::Test {
     write("secret.txt", "none of it");
     fs::create_symlink("/etc/passwd", folder_ / "assets/passwd.txt");
   }
-  ~Page() override { fs::remove_all(folder_); }
 
   void write(const char* name, const char* text) const { std::ofstream(folder_ / name) << text; }
 
@@ -36,7 +36,8 @@ class Page : public ::testing::Test {
     return {};
   }
 
-  const fs::path folder_;
+  const test::ScratchFolder scratch_;  ///< Tests run beside each other: to each a folder of its own.
+  const fs::path folder_ = scratch_.path();
   FakeCell cell_;
   EventHub events_{"run"};
   FakeOperations operations_;
