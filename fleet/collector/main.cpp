@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <iostream>
 
 #include "core/base/utc_text.hpp"
@@ -37,21 +38,24 @@ void add_options(CLI::App& app, CollectorSettings& settings) {
   option("--broker", broker.host, "BROKER", "Name or address of the MQTT broker");
   option("--port", broker.port, "PORT", "Its port; 0: 1883, with --tls 8883");
   option("--prefix", settings.prefix, "PREFIX", "First level of every topic, as mqtt.prefix of the daemons");
-  option("--client-id", broker.client_id, "CLIENT_ID", "Of a second collector at the same broker: another one");
+  option("--client-id", broker.client_id, "CLIENT_ID",
+         "Of a second collector at the same broker: another one");
   option("--username", broker.username, "USERNAME", "User at the broker");
-  option("--password-file", broker.password_file, "PASSWORD_FILE", "File whose first line is the user's password");
+  option("--password-file", broker.password_file, "PASSWORD_FILE",
+         "File whose first line is the user's password");
   app.add_flag("--tls", broker.tls, "Speak TLS to the broker")->envname("CALIBRD_COLLECTOR_TLS");
-  option("--ca", broker.ca, "CA", "PEM file: authorities of the broker's certificate; the system's without it");
+  option("--ca", broker.ca, "CA",
+         "PEM file: authorities of the broker's certificate; the system's without it");
   option("--certificate", broker.certificate, "CERTIFICATE", "PEM file: certificate to show to the broker");
   option("--key", broker.key, "KEY", "PEM file with its key");
   option("--database", settings.database, "DATABASE",
-         "PostgreSQL, as libpq takes it: \"host=db dbname=calibrd user=collector passfile=/run/secrets/pgpass\"");
+         "PostgreSQL, as libpq takes it: \"host=db dbname=calibrd user=collector "
+         "passfile=/run/secrets/pgpass\"");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"calibrd-collector puts the calibrations of all cells into PostgreSQL: docs/fleet.md.", "calibrd-collector"};
+int collect(int argc, char** argv) {
+  CLI::App app{"calibrd-collector puts the calibrations of all cells into PostgreSQL: docs/fleet.md.",
+               "calibrd-collector"};
   app.set_version_flag("--version", "calibrd-collector " CALIBRD_VERSION);
   CollectorSettings settings;
   add_options(app, settings);
@@ -72,4 +76,15 @@ int main(int argc, char** argv) {
   if (status) return 0;
   std::cerr << "calibrd-collector: " << status.error().message() << '\n';
   return kUnusable;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return collect(argc, argv);
+  } catch (const std::exception& failure) {
+    std::cerr << "calibrd-collector: unexpected failure: " << failure.what() << '\n';
+    return 1;
+  }
 }

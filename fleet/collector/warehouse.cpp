@@ -3,7 +3,9 @@
 #include "fleet/collector/warehouse.hpp"
 
 #include <libpq-fe.h>
+#include <poll.h>
 
+#include <array>
 #include <boost/json/serialize.hpp>
 #include <boost/json/string.hpp>
 #include <string_view>
@@ -28,21 +30,30 @@ FROM jsonb_array_elements($1::jsonb) AS arrivals (a), LATERAL (SELECT a -> 'docu
 ON CONFLICT DO NOTHING
 )sql";
 
-struct Clear {
-  void operator()(PGresult* result) const { PQclear(result); }
-};
-using Rows = std::unique_ptr<PGresult, Clear>;
+constexpr int kPeriod_ms = 200;
 
-bool is_good(const Rows& rows) {
-  const auto status = PQresultStatus(rows.get());
+// A host that vanishes is noticed within some 20 s: the kernel's own patience is a quarter of an hour.
+constexpr std::array kNames{"keepalives_idle", "keepalives_interval", "keepalives_count", "tcp_user_timeout"};
+constexpr std::array kValues{"10", "3", "3", "15000"};
+
+bool is_good(const PGresult* rows) {
+  const auto status = PQresultStatus(rows);
   return status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK;
 }
 
-/// Classes of SQLSTATE that another try does not change: data exceptions, violated constraints.
-bool is_final(const Rows& rows) {
-  const char* state = PQresultErrorField(rows.get(), PG_DIAG_SQLSTATE);
+/// Classes of SQLSTATE that another try does not change: data exceptions, violated constraints, exceeded
+/// limits.
+bool is_final(const PGresult* rows) {
+  const char* state = PQresultErrorField(rows, PG_DIAG_SQLSTATE);
   const std::string_view code = state ? state : "";
-  return code.starts_with("22") || code.starts_with("23");
+  return code.starts_with("22") || code.starts_with("23") || code.starts_with("54");
+}
+
+pg_conn* open_connection(const std::string& database) {
+  std::vector<const char*> names(kNames.begin(), kNames.end()), values(kValues.begin(), kValues.end());
+  names.insert(names.end(), {"dbname", nullptr});  // last: what it says itself goes before ours
+  values.insert(values.end(), {database.c_str(), nullptr});
+  return PQconnectdbParams(names.data(), values.data(), 1);
 }
 
 std::string batch_of(const std::vector<Arrival>& arrivals) {
@@ -57,27 +68,63 @@ std::string batch_of(const std::vector<Arrival>& arrivals) {
 
 }  // namespace
 
+void Warehouse::Clear::operator()(PGresult* result) const { PQclear(result); }
 void Warehouse::Close::operator()(pg_conn* connection) const { PQfinish(connection); }
 
+bool Warehouse::is_connected() const { return connection_ && PQstatus(connection_.get()) == CONNECTION_OK; }
+
 Status Warehouse::connect() {
-  if (connection_ && PQstatus(connection_.get()) == CONNECTION_OK) return Done{};
-  connection_.reset(PQconnectdb(database_.c_str()));
-  if (PQstatus(connection_.get()) == CONNECTION_OK) {
-    PQsetNoticeProcessor(connection_.get(), [](void*, const char*) {}, nullptr);
+  if (is_connected()) return Done{};
+  connection_.reset(open_connection(database_));
+  if (is_connected()) {
+    PQsetnonblocking(connection_.get(), 1);
+    PQsetNoticeProcessor(
+        connection_.get(), [](void*, const char*) {}, nullptr);
     return run("SET synchronous_commit TO on", WarehouseError::no_connection);
   }
   return Error{WarehouseError::no_connection, PQerrorMessage(connection_.get())};
 }
 
+Warehouse::Rows Warehouse::ask(const std::string& sql) {
+  if (PQsendQuery(connection_.get(), sql.c_str()) == 0) return nullptr;
+  return answer();
+}
+
+/// The last of the statements' results; nothing where the connection was lost, or given up.
+Warehouse::Rows Warehouse::answer() {
+  Rows last;
+  while (wait_for_server()) {
+    Rows next(PQgetResult(connection_.get()));
+    if (!next) return last;
+    last = std::move(next);
+  }
+  return nullptr;
+}
+
+/// True: a result, or the end of them, can be had without waiting.
+bool Warehouse::wait_for_server() {
+  auto* connection = connection_.get();
+  for (;;) {
+    const int unsent = PQflush(connection);
+    if (unsent < 0) return false;
+    if (unsent == 0 && PQisBusy(connection) == 0) return true;
+    pollfd waited{PQsocket(connection), static_cast<short>(unsent > 0 ? POLLIN | POLLOUT : POLLIN), 0};
+    poll(&waited, 1, kPeriod_ms);
+    if (waited.revents != 0 && PQconsumeInput(connection) == 0) return false;
+    if (!is_ending_()) continue;
+    connection_.reset();  // the server may be at it still; a transaction that is not committed is none
+    return false;
+  }
+}
+
 Status Warehouse::run(const std::string& sql, WarehouseError why) {
-  const Rows rows(PQexec(connection_.get(), sql.c_str()));
-  if (is_good(rows)) return Done{};
+  if (is_good(ask(sql).get())) return Done{};
   return Error{why, PQerrorMessage(connection_.get())};
 }
 
 Result<int> Warehouse::schema_version() {
-  const Rows rows(PQexec(connection_.get(), "SELECT coalesce(max(version), 0) FROM calibrd_schema"));
-  if (!is_good(rows)) return Error{WarehouseError::cannot_migrate, PQerrorMessage(connection_.get())};
+  const auto rows = ask("SELECT coalesce(max(version), 0) FROM calibrd_schema");
+  if (!is_good(rows.get())) return Error{WarehouseError::cannot_migrate, PQerrorMessage(connection_.get())};
   return std::stoi(PQgetvalue(rows.get(), 0, 0));
 }
 
@@ -87,7 +134,9 @@ Status Warehouse::prepare() {
     constexpr auto why = WarehouseError::cannot_migrate;
     if (auto status = run(kTakeLock, why); !status) return status;
     if (auto status = run("CREATE TABLE IF NOT EXISTS calibrd_schema (version integer PRIMARY KEY, "
-                          "taken_at timestamptz NOT NULL DEFAULT now())", why); !status)
+                          "taken_at timestamptz NOT NULL DEFAULT now())",
+                          why);
+        !status)
       return status;
     const auto version = schema_version();
     if (!version) return version.error();
@@ -112,11 +161,14 @@ Status Warehouse::store(const std::vector<Arrival>& arrivals) {
   if (auto status = connect(); !status) return status;
   const auto batch = batch_of(arrivals);
   const char* values[] = {batch.c_str()};
-  const Rows rows(PQexecParams(connection_.get(), kInsert, 1, nullptr, values, nullptr, nullptr, 0));
-  if (is_good(rows)) return Done{};
-  const Error error{is_final(rows) ? WarehouseError::unfit : WarehouseError::cannot_store,
-                    PQerrorMessage(connection_.get())};
-  return error;
+  const bool is_sent =
+      PQsendQueryParams(connection_.get(), kInsert, 1, nullptr, values, nullptr, nullptr, 0) != 0;
+  const auto rows = is_sent ? answer() : nullptr;
+  if (is_good(rows.get())) return Done{};
+  const auto why = !is_connected()        ? WarehouseError::no_connection
+                   : is_final(rows.get()) ? WarehouseError::unfit
+                                          : WarehouseError::cannot_store;
+  return Error{why, PQerrorMessage(connection_.get())};
 }
 
 }  // namespace calibrd::fleet

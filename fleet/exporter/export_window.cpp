@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fleet/exporter/export_window.hpp"
 
+#include <utility>
+
 namespace calibrd::fleet {
 namespace {
 
 constexpr std::chrono::seconds kFirstPause{15}, kLastPause{300};
 
 }  // namespace
+
+/// What waits of an earlier one goes on being sent: a collector may store it although the database is lost.
+void ExportWindow::follow(std::uint64_t generation) {
+  if (std::exchange(generation_, generation) != generation) newest_ = 0;
+}
 
 void ExportWindow::add(std::int64_t number, std::string id, std::string payload) {
   newest_ = std::max(newest_, number);

@@ -10,8 +10,8 @@
 
 namespace calibrd::fleet {
 
-/// Which calibrations are sent when: a window over the outbox of which each is sent again, ever more seldom, until it is
-/// acknowledged. Does no I/O.
+/// Which calibrations are sent when: a window over the outbox of which each is sent again, ever more seldom,
+/// until it is acknowledged. Does no I/O.
 class ExportWindow {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -19,6 +19,8 @@ class ExportWindow {
   explicit ExportWindow(std::size_t capacity) : capacity_(capacity) {}
 
   std::size_t room() const { return capacity_ - std::min(capacity_, waiting_.size()); }
+  /// Whose numbers are meant from now on; of another generation they begin anew.
+  void follow(std::uint64_t generation);
   /// The outbox is to be read from after this number.
   std::int64_t newest() const { return newest_; }
   std::size_t size() const { return waiting_.size(); }
@@ -42,7 +44,8 @@ class ExportWindow {
     Time due{};
   };
   std::size_t capacity_;
-  std::int64_t newest_ = 0;
+  std::uint64_t generation_ = 0;
+  std::int64_t newest_ = 0;             // of this generation
   std::map<std::string, Row> waiting_;  // by id: dated, so oldest first
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fleet/exporter/exporter.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/thread_name.hpp"
@@ -19,22 +20,25 @@ MqttSettings broker_of(const ExporterSettings& settings) {
   auto broker = settings.broker;
   broker.client_id = "calibrd-" + settings.cell;
   broker.will_topic = CellTopics(settings.prefix, settings.cell).status();
-  broker.will_payload = status_payload(settings.cell, false, settings.version, std::chrono::system_clock::now());
+  broker.will_payload =
+      status_payload(settings.cell, false, settings.version, std::chrono::system_clock::now());
   return broker;
 }
 
 }  // namespace
 
-Exporter::Exporter(const ExporterSettings& settings, const api::CellService& service, Outbox& outbox, ExporterLog log)
+Exporter::Exporter(const ExporterSettings& settings, const api::CellService& service, Outbox& outbox,
+                   ExporterLog log)
     : settings_(settings),
       topics_(settings.prefix, settings.cell),
       outbox_(outbox),
       log_(std::move(log)),
       window_(kWindow),
-      states_(service, topics_, settings.cell) {}
+      states_(service, topics_, settings.cell, settings.version) {}
 
-Result<std::unique_ptr<Exporter>> Exporter::start(const ExporterSettings& settings, const api::CellService& service,
-                                                  Outbox& outbox, ExporterLog log) {
+Result<std::unique_ptr<Exporter>> Exporter::start(const ExporterSettings& settings,
+                                                  const api::CellService& service, Outbox& outbox,
+                                                  ExporterLog log) {
   std::unique_ptr<Exporter> exporter(new Exporter(settings, service, outbox, std::move(log)));
   auto client = MqttClient::start(broker_of(settings), exporter->events());
   if (!client) return client.error();
@@ -67,6 +71,7 @@ MqttEvents Exporter::events() {
   events.on_connect = [this] {
     const std::lock_guard lock(mutex_);
     is_connected_ = is_new_connection_ = is_woken_ = true;
+    in_flight_ = 0;  // what was on its way is lost with the old connection
     trouble_.clear();
     change_.notify_all();
   };
@@ -81,7 +86,7 @@ MqttEvents Exporter::events() {
   };
   events.on_taken = [this] {
     const std::lock_guard lock(mutex_);
-    --in_flight_;
+    in_flight_ = std::max(0, in_flight_ - 1);
   };
   events.on_message = [this](std::string topic, std::string payload) {
     const std::lock_guard lock(mutex_);
@@ -119,9 +124,10 @@ void Exporter::look() {
   if (is_new) greet();
   for (const auto& message : heard) hear(message);
   if (!is_connected) return;
-  states_.look([this](const auto& topic, const auto& payload, auto expiry) {
+  const auto publish_state = [this](const auto& topic, const auto& payload, auto expiry) {
     return publish(topic, payload, true, expiry);
-  });
+  };
+  states_.look(publish_state, std::chrono::steady_clock::now());
   refill();
   send_due();
 }
@@ -132,10 +138,8 @@ void Exporter::greet() {
   client_->subscribe(collector_topic(settings_.prefix));
   states_.forget();
   window_.send_all_again();
-  publish(topics_.status(), status_payload(settings_.cell, true, settings_.version, std::chrono::system_clock::now()),
-          true);
-  log_("mqtt: connected to " + settings_.broker.host + ":" + std::to_string(settings_.broker.port) + " as cell " +
-           settings_.cell,
+  log_("mqtt: connected to " + settings_.broker.host + ":" + std::to_string(settings_.broker.port) +
+           " as cell " + settings_.cell,
        true);
 }
 
@@ -144,7 +148,8 @@ void Exporter::hear(const Message& message) {
   if (message.topic != topics_.acknowledgements()) return;
   const auto acknowledgement = parse_acknowledgement(message.payload);
   if (acknowledgement) return note(*acknowledgement);
-  log_("mqtt: an acknowledgement that is none came on " + message.topic + "; who else publishes there?", false);
+  log_("mqtt: an acknowledgement that is none came on " + message.topic + "; who else publishes there?",
+       false);
 }
 
 void Exporter::note(const Acknowledgement& acknowledgement) {
@@ -162,6 +167,8 @@ void Exporter::note(const Acknowledgement& acknowledgement) {
 
 void Exporter::refill() {
   if (window_.room() == 0) return;
+  // Before its rows: should it change in between, they are read again.
+  window_.follow(outbox_.generation());
   const auto rows = outbox_.waiting(window_.newest(), static_cast<int>(window_.room()));
   if (!rows) {
     if (outbox_trouble_ != rows.error().message())
@@ -178,7 +185,8 @@ void Exporter::send_due() {
     publish(topics_.calibrations(), payload, false);
 }
 
-/// What is not taken now is told again: states when they are next looked at, calibrations until they are acknowledged.
+/// What is not taken now is told again: states when they are next looked at, calibrations until they are
+/// acknowledged.
 bool Exporter::publish(const std::string& topic, const std::string& payload, bool retain,
                        std::optional<std::chrono::seconds> expiry) {
   {
@@ -188,14 +196,15 @@ bool Exporter::publish(const std::string& topic, const std::string& payload, boo
   }
   if (client_->publish(topic, payload, retain, expiry)) return true;
   const std::lock_guard lock(mutex_);
-  --in_flight_;
+  in_flight_ = std::max(0, in_flight_ - 1);  // it may have been set to 0 in between
   return false;
 }
 
-/// The last will is for ends that nobody had time for.
+/// The last will is for ends that nobody had time for. However much is on its way: nothing comes after this.
 void Exporter::end() {
-  publish(topics_.status(), status_payload(settings_.cell, false, settings_.version, std::chrono::system_clock::now()),
-          true);
+  states_.end([this](const auto& topic, const auto& payload, auto expiry) {
+    return client_->publish(topic, payload, true, expiry).has_value();
+  });
 }
 
 }  // namespace calibrd::fleet

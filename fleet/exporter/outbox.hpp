@@ -12,7 +12,7 @@ namespace calibrd::fleet {
 
 /// A calibration that has ended and that no collector has acknowledged yet.
 struct OutboxRow {
-  std::int64_t number = 0;  ///< rising
+  std::int64_t number = 0;  ///< rising within a generation
   api::CalibrationReport calibration;
 };
 
@@ -20,6 +20,8 @@ struct OutboxRow {
 class Outbox {
  public:
   virtual ~Outbox() = default;
+  /// Another one: numbers begin anew, as the database behind it is another one.
+  virtual std::uint64_t generation() const = 0;
   /// Rows with a number above `after`, oldest first.
   virtual Result<std::vector<OutboxRow>> waiting(std::int64_t after, int limit) = 0;
   virtual Status remove(const std::vector<std::string>& calibration_ids) = 0;

@@ -13,32 +13,40 @@
 namespace calibrd::fleet {
 
 /// Hands a retained message on. False: it could not be taken now.
-using PublishRetained =
-    std::function<bool(const std::string& topic, const std::string& payload, std::optional<std::chrono::seconds> expiry)>;
+using PublishRetained = std::function<bool(const std::string& topic, const std::string& payload,
+                                           std::optional<std::chrono::seconds> expiry)>;
 
-/// Tells what has changed of poses and states since it last looked. A valid pose is told again before the broker forgets
-/// it: a message that outlives what it says would be a wrong pose. One thread at a time.
+/// Tells what has changed of poses and states since it last looked. What holds only while the daemon lives is
+/// told again and again, and the broker forgets it when that ends: a message that outlives what it says would
+/// be a wrong pose. One thread at a time.
 class StatePublisher {
  public:
+  using Time = std::chrono::steady_clock::time_point;
+
   /// `service` must outlive it.
-  StatePublisher(const api::CellService& service, CellTopics topics, std::string cell);
+  StatePublisher(const api::CellService& service, CellTopics topics, std::string cell, std::string version);
 
-  void look(const PublishRetained& publish);
+  void look(const PublishRetained& publish, Time now);
 
-  /// The broker may know nothing of what was told.
-  void forget() { told_.clear(); }
+  /// The last words: no pose is valid, nothing is known of a sensor, and then that the cell is offline. They
+  /// stay.
+  void end(const PublishRetained& publish) const;
+
+  /// There is another connection. The broker may know nothing of what was told.
+  void forget();
 
  private:
   struct Told {
     std::string payload;
-    std::chrono::steady_clock::time_point at;
+    Time at;
   };
-  void tell_pose(const api::PoseReport& pose, const PublishRetained& publish);
-  void tell_state(const api::SensorReport& sensor, const api::PoseReport& pose, const PublishRetained& publish);
+  void tell(const std::string& topic, std::string payload, const PublishRetained& publish, Time now);
+  void tell_pose(const api::PoseReport& pose, const PublishRetained& publish, Time now);
 
   const api::CellService& service_;
   CellTopics topics_;
-  std::string cell_;
+  std::string cell_, version_;
+  api::SystemTime online_since_;
   std::map<std::string, Told> told_;  // by topic
 };
 

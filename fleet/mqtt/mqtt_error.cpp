@@ -14,7 +14,8 @@ const char* text(MqttError code) {
     case MqttError::bad_address:
       return "the broker cannot be connected to at all; check host and port";
     case MqttError::bad_tls_file:
-      return "a certificate or key for the broker cannot be used; check that the files are PEM, belong together and "
+      return "a certificate or key for the broker cannot be used; check that the files are PEM, belong "
+             "together and "
              "can be read by this user";
     case MqttError::bad_password_file:
       return "the file with the broker's password cannot be read; its first line is the password";

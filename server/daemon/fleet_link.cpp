@@ -36,6 +36,8 @@ class FleetLink::StoreOutbox final : public fleet::Outbox {
  public:
   explicit StoreOutbox(CalibrationStore& store) : store_(store) {}
 
+  std::uint64_t generation() const override { return store_.outbox_generation(); }
+
   Result<std::vector<fleet::OutboxRow>> waiting(std::int64_t after, int limit) override {
     auto entries = store_.outbox(after, limit);
     if (!entries) return entries.error();
@@ -56,13 +58,15 @@ Status check_mqtt(const Config& config) {
   const auto& mqtt = config.mqtt;
   if (mqtt.host.empty()) return Done{};
   if (!fleet::is_name(mqtt.cell))
-    return bad("mqtt.cell: with mqtt.host the cell needs a name of letters, digits, '.', '_' and '-', at most 64");
+    return bad(
+        "mqtt.cell: with mqtt.host the cell needs a name of letters, digits, '.', '_' and '-', at most 64");
   if (!fleet::is_name(mqtt.prefix)) return bad("mqtt.prefix: letters, digits, '.', '_' and '-', at most 64");
   if (mqtt.tls.certificate.empty() != mqtt.tls.key.empty())
     return bad("mqtt.tls: certificate and key come together");
   for (const auto& [id, sensor] : config.sensors)
     if (!fleet::is_name(id))
-      return bad("sensors." + id + ": its name is a part of topics: letters, digits, '.', '_' and '-', at most 64");
+      return bad("sensors." + id +
+                 ": its name is a part of topics: letters, digits, '.', '_' and '-', at most 64");
   return Done{};
 }
 
@@ -75,11 +79,35 @@ Status FleetLink::make(const Config& config, const std::string& version, const a
   if (auto status = check_mqtt(config); !status) return status;
   std::unique_ptr<FleetLink> link(new FleetLink);
   link->outbox_ = std::make_unique<StoreOutbox>(store);
-  auto exporter = fleet::Exporter::start(settings_of(config.mqtt, version), cell, *link->outbox_, log_security);
+  auto exporter =
+      fleet::Exporter::start(settings_of(config.mqtt, version), cell, *link->outbox_, log_security);
   if (!exporter) return Error{exporter.error().code, "mqtt: " + exporter.error().detail};
   link->exporter_ = *std::move(exporter);
   made = std::move(link);
   return Done{};
+}
+
+Status FleetBell::hang(const Config& config, const std::string& version, const api::CellService& cell,
+                       CalibrationStore& store) {
+  std::unique_ptr<FleetLink> made;
+  if (auto status = FleetLink::make(config, version, cell, store, made); !status) return status;
+  const std::lock_guard lock(mutex_);
+  link_ = std::move(made);
+  return Done{};
+}
+
+void FleetBell::ring() {
+  const std::lock_guard lock(mutex_);
+  if (link_) link_->wake();
+}
+
+void FleetBell::take_down() {
+  std::unique_ptr<FleetLink> link;
+  {
+    const std::lock_guard lock(mutex_);
+    link.swap(link_);
+  }
+  link.reset();  // which takes a moment: the broker is told
 }
 
 }  // namespace calibrd

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "api/service/cell_service.hpp"
@@ -30,6 +31,23 @@ class FleetLink {
   FleetLink();
   std::unique_ptr<StoreOutbox> outbox_;
   std::unique_ptr<fleet::Exporter> exporter_;
+};
+
+/// The link, for those that call it while it comes and goes: calibrations may end until the cell does, which
+/// the link must not outlive. Safe to use from any thread.
+class FleetBell {
+ public:
+  /// See FleetLink::make().
+  Status hang(const Config& config, const std::string& version, const api::CellService& cell,
+              CalibrationStore& store);
+  /// As FleetLink::wake(); nothing happens where there is no link.
+  void ring();
+  /// Ends the link. ring() may still be called.
+  void take_down();
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<FleetLink> link_;  // guarded by mutex_
 };
 
 }  // namespace calibrd

@@ -47,6 +47,20 @@ TEST(ExportWindow, ANewBrokerOrCollectorIsSentAllAtOnce) {
   EXPECT_EQ(window.take_due(kStart + 1s), (std::vector<std::string>{"A", "B"}));
 }
 
+TEST(ExportWindow, AnotherDatabaseIsReadFromItsBeginning) {
+  ExportWindow window(4);
+  window.follow(1);
+  window.add(40, "a", "A");
+  window.follow(1);
+  EXPECT_EQ(window.newest(), 40);
+  window.follow(2);
+  EXPECT_EQ(window.newest(), 0);
+  window.add(1, "b", "B");
+  EXPECT_EQ(window.newest(), 1);
+  EXPECT_EQ(window.take_due(kStart), (std::vector<std::string>{"A", "B"}))
+      << "what waited goes on being sent";
+}
+
 TEST(ExportWindow, ARowThatIsReadTwiceIsHeldOnce) {
   ExportWindow window(4);
   window.add(1, "a", "A");

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// fleet_exporters: many daemons' exporters and stores, without their cells. Each calibration "ends" in the store of a cell
-// as in the daemon; what then happens to it is the real thing.
+// fleet_exporters: many daemons' exporters and stores, without their cells. Each calibration "ends" in the
+// store of a cell as in the daemon; what then happens to it is the real thing.
 //   fleet_exporters FOLDER CELLS BROKER_PORT PER_SECOND SECONDS DRAIN_SECONDS
-// For SECONDS, PER_SECOND calibrations in all; then it waits until nothing waits, DRAIN_SECONDS at most. Prints one JSON
-// object. A second run on the same folder goes on with what is in the stores.
+// For SECONDS, PER_SECOND calibrations in all; then it waits until nothing waits, DRAIN_SECONDS at most.
+// Prints one JSON object. A second run on the same folder goes on with what is in the stores.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -42,7 +42,8 @@ class Delays {
     const std::lock_guard lock(mutex_);
     if (all_.empty()) return 0;
     std::sort(all_.begin(), all_.end());
-    return all_[std::min(all_.size() - 1, static_cast<std::size_t>(share * static_cast<double>(all_.size())))];
+    return all_[std::min(all_.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(all_.size())))];
   }
   std::size_t count() {
     const std::lock_guard lock(mutex_);
@@ -59,6 +60,7 @@ class StoreOutbox final : public fleet::Outbox {
  public:
   StoreOutbox(CalibrationStore& store, Delays& delays) : store_(store), delays_(delays) {}
 
+  std::uint64_t generation() const override { return store_.outbox_generation(); }
   Result<std::vector<fleet::OutboxRow>> waiting(std::int64_t after, int limit) override {
     auto entries = store_.outbox(after, limit);
     if (!entries) return entries.error();
@@ -92,13 +94,15 @@ Cell make_cell(const std::filesystem::path& folder, int number, int port, Delays
   if (!store) throw std::runtime_error(store.error().message());
   cell.store = *std::move(store);
   cell.service->make_calibrated();
+  cell.service->pose_report.max_unverified = api::Seconds(24 * 3600);
   cell.outbox = std::make_unique<StoreOutbox>(*cell.store, delays);
   fleet::ExporterSettings settings;
   settings.broker.host = "127.0.0.1";
   settings.broker.port = port;
   settings.cell = name;
   settings.version = "test";
-  auto exporter = fleet::Exporter::start(settings, *cell.service, *cell.outbox, [](const std::string&, bool) {});
+  auto exporter =
+      fleet::Exporter::start(settings, *cell.service, *cell.outbox, [](const std::string&, bool) {});
   if (!exporter) throw std::runtime_error(exporter.error().message());
   cell.exporter = *std::move(exporter);
   return cell;
@@ -144,7 +148,9 @@ int main(int argc, char** argv) {
   const auto run = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
   for (int i = 0; i < count; ++i) cells.push_back(make_cell(argv[1], i, port, delays));
   const auto begin = Steady::now();
-  const auto after = [&](double s) { return begin + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(s)); };
+  const auto after = [&](double s) {
+    return begin + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(s));
+  };
   long made = 0;
   for (; ending == 0 && Steady::now() < after(seconds); ++made) {
     auto& cell = cells[static_cast<std::size_t>(made) % cells.size()];
@@ -152,10 +158,15 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_until(after(static_cast<double>(made + 1) / per_second));
   }
   const double made_in = std::chrono::duration<double>(Steady::now() - begin).count();
-  const auto end = Steady::now() + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(patience));
-  while (ending == 0 && Steady::now() < end && !is_drained(cells)) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  std::printf("{\"made\": %ld, \"seconds\": %.1f, \"acknowledged\": %zu, \"drained\": %s, \"delay_p50_s\": %.3f, \"delay_p99_s\": %.3f, "
-              "\"resident_kb\": %ld}\n", made, made_in, delays.count(), is_drained(cells) ? "true" : "false", delays.quantile(0.5),
-              delays.quantile(0.99), resident_kb());
+  const auto end =
+      Steady::now() + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(patience));
+  while (ending == 0 && Steady::now() < end && !is_drained(cells))
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::printf(
+      "{\"made\": %ld, \"seconds\": %.1f, \"acknowledged\": %zu, \"drained\": %s, \"delay_p50_s\": %.3f, "
+      "\"delay_p99_s\": %.3f, "
+      "\"resident_kb\": %ld}\n",
+      made, made_in, delays.count(), is_drained(cells) ? "true" : "false", delays.quantile(0.5),
+      delays.quantile(0.99), resident_kb());
   return 0;
 }

@@ -5,6 +5,9 @@
 
 import contextlib
 import json
+import os
+import random
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -101,6 +104,65 @@ class Fleet(CellTest):
         heard = "".join(answers.communicate(timeout=40)[0])
         self.assertIn('"calibration":"bad"', heard)
         self.assertIn('"stored":["good"]', heard)
+
+    def send(self, broker: Mosquitto, *documents):
+        for document in documents:
+            text = document if isinstance(document, str) else json.dumps(document)
+            subprocess.run(["mosquitto_pub", "-V", "5", "-q", "1", "-p", str(broker.port), "-t", "calibrd/v1/cells/odd/calibrations", "-s"],
+                           input=text, text=True, check=True, timeout=20)
+
+    def test_what_the_database_does_not_take_now_holds_up_no_other(self):
+        broker, postgres, collector = self.start_three()
+        good = {"id": "good", "sensor": "s", "created_at": "2026-01-01T00:00:00Z", "status": "failed", "method": "full"}
+        wait_until("the tables are there", lambda: (self.send(broker, {**good, "id": "first"}), self.rows(postgres))[1])
+        # Errors of a class that may pass, and of one that will not (a limit of PostgreSQL is exceeded).
+        postgres.ask("CREATE FUNCTION no() RETURNS trigger LANGUAGE plpgsql AS $$BEGIN IF NEW.calibration_id = 'later' THEN RAISE 'not now'; END IF; "
+                     "IF NEW.calibration_id = 'never' THEN RAISE 'too much' USING ERRCODE = '54000'; END IF; RETURN NEW; END$$")
+        postgres.ask("CREATE TRIGGER no BEFORE INSERT ON calibrations FOR EACH ROW EXECUTE FUNCTION no()")
+        long_name = "".join(random.Random(1).choices("abcdefghijklmnopqrstuvwxyz0123456789", k=20000))
+        self.send(broker, {**good, "id": "later"}, {**good, "id": "never"}, {**good, "id": "long", "sensor": long_name}, {**good, "id": "huge", "x": "x" * 2_000_000},
+                  {**good, "id": "no name"}, good)
+        wait_until("the good one is stored", lambda: ("odd", "good") in self.rows(postgres), 15)
+        self.assertEqual({row[1] for row in self.rows(postgres)}, {"first", "good"})
+        said = collector.output()
+        for words in ("calibration long cannot be stored: its sensor", "calibration never cannot be stored: ", "a message of 2000", "no calibration with an id came on calibrd/v1/cells/odd", "not now"):
+            self.assertIn(words, said)
+        postgres.ask("DROP TRIGGER no ON calibrations")
+        wait_until("the other one is stored", lambda: ("odd", "later") in self.rows(postgres), 15)
+
+    def test_a_collector_ends_though_its_database_does_not_answer(self):
+        broker, postgres, collector = self.start_three()
+        good = {"id": "good", "sensor": "s", "created_at": "2026-01-01T00:00:00Z", "status": "failed", "method": "full"}
+        wait_until("the tables are there", lambda: (self.send(broker, good), self.rows(postgres))[1])
+        backends = [int(row[0]) for row in postgres.ask("SELECT pid FROM pg_stat_activity WHERE backend_type = 'client backend' AND pid <> pg_backend_pid()")]
+        self.assertEqual(len(backends), 1)
+        os.kill(backends[0], signal.SIGSTOP)
+        self.addCleanup(os.kill, backends[0], signal.SIGCONT)
+        self.send(broker, {**good, "id": "waits"})
+        time.sleep(1)
+        collector.process.terminate()
+        self.assertEqual(collector.process.wait(5), 0)
+
+    def test_what_is_retained_expires_while_a_cell_lives_and_says_so_when_it_has_ended(self):
+        broker = self.start(Mosquitto(self.folder, free_port()))
+        work = self.exporters(broker, 1, 1000, 300, 0)  # without a collector all that may be on its way is
+        self.addCleanup(work.kill)
+        base = "calibrd/v1/cells/cell-0"
+        topics = (f"{base}/status", f"{base}/sensors/{SENSOR}/pose", f"{base}/sensors/{SENSOR}/state")
+        wait_until("the state is told", lambda: broker.hear(topics[2], timeout_s=2))
+        for topic in topics:
+            left_s = int(broker.hear(topic, "-F", "%E"))
+            self.assertTrue(0 < left_s <= 60, f"{topic}: {left_s}")
+        self.assertIn("T_base_sensor", broker.hear(topics[1]))
+        work.terminate()
+        work.wait(30)
+        status, pose, state = (json.loads(broker.hear(topic)) for topic in topics)
+        self.assertFalse(status["online"])
+        self.assertFalse(pose["valid"])
+        self.assertNotIn("T_base_sensor", pose)
+        self.assertFalse(state["pose_valid"])
+        self.assertEqual(state["health"], "lost")
+        self.assertEqual([broker.hear(topic, "-F", "%E") for topic in topics], [""] * 3, "the last words stay")
 
     def test_a_daemon_tells_pose_state_and_its_own_end_through_tls(self):
         authority = Authority(self.folder, "root")
