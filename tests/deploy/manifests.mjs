@@ -6,14 +6,22 @@
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import yaml from "js-yaml";
+import { cellFaults } from "./cells.mjs";
 import { podFaults } from "./pods.mjs";
 import { composeFaults, kubernetesFaults } from "./schemas.mjs";
 
 const source = process.argv[2];
 const read = (path) => readFileSync(path, "utf-8");
 
+/** The Pod Security level of each namespace that a folder makes. */
+function levelsOf(folders) {
+  const spaces = folders.flatMap((folder) => readdirSync(folder).filter((file) => file.endsWith(".yaml"))
+    .flatMap((file) => yaml.loadAll(read(join(folder, file))))).filter((object) => object?.kind === "Namespace");
+  return new Map(spaces.map(({ metadata }) => [metadata.name, metadata.labels?.["pod-security.kubernetes.io/enforce"] ?? "privileged"]));
+}
+
 /** One folder that `kubectl apply -k` takes. */
-function kustomizationFaults(folder) {
+function kustomizationFaults(folder, levels) {
   const text = read(join(folder, "kustomization.yaml"));
   const kustomization = yaml.load(text);
   const files = [...kustomization.resources, ...(kustomization.configMapGenerator ?? []).flatMap((map) => map.files)];
@@ -21,12 +29,15 @@ function kustomizationFaults(folder) {
   const listed = new Set([...kustomization.resources, "kustomization.yaml"]);
   for (const file of readdirSync(folder))
     if (file.endsWith(".yaml") && !listed.has(file)) faults.push(`${folder}: nothing takes ${file}`);
+  const objects = kustomization.resources.filter((file) => existsSync(join(folder, file)))
+    .flatMap((file) => yaml.loadAll(read(join(folder, file))));
+  if (!levels.has(kustomization.namespace)) faults.push(`${folder}: nothing makes the namespace ${kustomization.namespace}`);
   const known = {
+    level: levels.get(kustomization.namespace),
+    claim: objects.filter((object) => object.kind === "PersistentVolumeClaim").map((object) => object.metadata.name),
     configMap: (kustomization.configMapGenerator ?? []).map((map) => map.name),
     secret: [...text.matchAll(/create secret generic (\S+)/g)].map((match) => match[1]), // its head says how they are made
   };
-  const objects = kustomization.resources.filter((file) => existsSync(join(folder, file)))
-    .flatMap((file) => yaml.loadAll(read(join(folder, file))));
   const images = new Set((kustomization.images ?? []).map((image) => image.name));
   for (const object of objects)
     for (const container of containersOf(object))
@@ -53,8 +64,9 @@ function serviceFaults(name, services) {
 export function faultsOf(root) {
   const kubernetes = join(root, "deploy/kubernetes"), docker = join(root, "docker");
   const compose = readdirSync(docker).filter((file) => file.startsWith("compose."));
+  const folders = readdirSync(kubernetes).map((folder) => join(kubernetes, folder)), levels = levelsOf(folders);
   return [
-    ...readdirSync(kubernetes).flatMap((folder) => kustomizationFaults(join(kubernetes, folder))),
+    ...folders.flatMap((folder) => [...kustomizationFaults(folder, levels), ...cellFaults(folder)]),
     ...compose.flatMap((file) => {
       const document = yaml.load(read(join(docker, file)));
       return [...composeFaults(file, document), ...serviceFaults(file, document.services)];

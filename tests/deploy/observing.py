@@ -43,6 +43,10 @@ def faults_of(expression: str, known: dict[str, set[str]]) -> list[str]:
     return faults
 
 
+def unknown_jobs(expression: str, jobs: list[str]) -> list[str]:
+    return [f"nothing scrapes a job {job}" for job in re.findall(r'\bjob="(\w+)"', expression) if job not in jobs]
+
+
 def alerts(text: str) -> list[tuple[str, str]]:
     return re.findall(r"- alert: (\w+)[^\n]*\n\s+expr: ([^\n]*)", text)
 
@@ -50,6 +54,8 @@ def alerts(text: str) -> list[tuple[str, str]]:
 def check(source: Path) -> list[str]:
     known, asked = metrics(source), expressions(source)
     faults = [f"{where}: {fault}" for where, expression in asked for fault in faults_of(expression, known)]
+    jobs = re.findall(r"job_name: (\w+)", (source / "deploy/prometheus/prometheus.yml").read_text(encoding="utf-8"))
+    faults += [f"{where}: {fault}" for where, expression in asked for fault in unknown_jobs(expression, jobs)]
     if len(asked) < 10 or not known:
         faults.append(f"only {len(asked)} expressions and {len(known)} metrics were found: this test reads them wrongly")
     shown = alerts((source / "docs/operations.md").read_text(encoding="utf-8"))
@@ -64,8 +70,9 @@ def prometheus_says(source: Path) -> list[str]:
     if not promtool:
         return []
     folder, faults = source / "deploy/prometheus", []
-    for what in (("rules", "calibrd.rules.yml"), ("config", "--syntax-only", "prometheus.yml")):
-        done = subprocess.run([promtool, "check", *what], cwd=folder, capture_output=True, text=True, check=False)
+    for what in (("check", "rules", "calibrd.rules.yml"), ("check", "config", "--syntax-only", "prometheus.yml"),
+                 ("test", "rules", source.resolve() / "tests/deploy/rules_test.yml")):
+        done = subprocess.run([promtool, *what], cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             faults.append(done.stdout + done.stderr)
     return faults

@@ -4,7 +4,7 @@
 """observing.py finds what it is to find."""
 import unittest
 
-from observing import alerts, faults_of
+from observing import alerts, faults_of, unknown_jobs
 
 KNOWN = {"calibrd_pose_valid": {"sensor"}, "calibrd_http_request_duration_seconds_bucket": {"route"}}
 
@@ -22,6 +22,10 @@ class Observing(unittest.TestCase):
 
     def test_a_label_that_is_not_there(self):
         self.assertEqual(faults_of('calibrd_pose_valid{name="a"}', KNOWN), ["calibrd_pose_valid has no label name"])
+
+    def test_a_job_that_nothing_scrapes(self):
+        self.assertEqual(unknown_jobs('up{job="calibrd"} == 0', ["calibrd"]), [])
+        self.assertEqual(unknown_jobs('up{job="cells"} == 0', ["calibrd"]), ["nothing scrapes a job cells"])
 
     def test_rules_are_read_with_their_comments(self):
         self.assertEqual(alerts("  - alert: A   # why\n    expr: x == 0\n"), [("A", "x == 0")])

@@ -4,6 +4,20 @@
 
 const PRIVILEGED_KEYS = ["hostNetwork", "hostPID", "hostIPC"];
 
+/** Volumes that the Pod Security level "restricted" lets pods have; "baseline" forbids hostPath alone. */
+const RESTRICTED_VOLUMES = ["configMap", "csi", "downwardAPI", "emptyDir", "ephemeral", "persistentVolumeClaim", "projected", "secret"];
+
+/** What the namespace's Pod Security level refuses: no schema and no dry run on another namespace tells. */
+function levelFaults(name, spec, level) {
+  if (level === "privileged") return [];
+  const kinds = (spec.volumes ?? []).flatMap((volume) => Object.keys(volume).filter((key) => key !== "name"));
+  const refused = kinds.filter((kind) => (level === "restricted" ? !RESTRICTED_VOLUMES.includes(kind) : kind === "hostPath"));
+  const faults = refused.map((kind) => `${name} mounts a ${kind}, which its namespace (${level}) refuses`);
+  if (level === "restricted" && !["RuntimeDefault", "Localhost"].includes(spec.securityContext?.seccompProfile?.type))
+    faults.push(`${name} has no seccompProfile, which its namespace (${level}) refuses`);
+  return faults;
+}
+
 function containerFaults(name, container, volumes) {
   const faults = [];
   const rights = container.securityContext ?? {};
@@ -13,6 +27,8 @@ function containerFaults(name, container, volumes) {
   if (!rights.capabilities?.drop?.includes("ALL")) faults.push("keeps capabilities");
   for (const mount of container.volumeMounts ?? [])
     if (!volumes.includes(mount.name)) faults.push(`mounts a volume ${mount.name} that is not there`);
+  for (const variable of container.env ?? []) // where it is shown by whoever lists processes, with the final newline of its file
+    if (variable.valueFrom?.secretKeyRef) faults.push(`has a secret in its environment: ${variable.name}`);
   const ports = (container.ports ?? []).map((port) => port.name);
   for (const probe of [container.startupProbe, container.livenessProbe, container.readinessProbe]) {
     const port = probe?.httpGet?.port ?? probe?.tcpSocket?.port;
@@ -21,18 +37,15 @@ function containerFaults(name, container, volumes) {
   return faults.map((fault) => `${name}/${container.name} ${fault}`);
 }
 
-/** References of a pod to configuration and secrets that are not among `known`, by kind. */
+/** References of a pod to configuration, secrets and claims that are not among `known`, by kind. */
 function referenceFaults(name, spec, known) {
-  const named = (spec.volumes ?? []).flatMap((volume) =>
-    volume.configMap ? [["configMap", volume.configMap.name]] : volume.secret ? [["secret", volume.secret.secretName]] : []);
-  for (const container of spec.containers)
-    for (const variable of container.env ?? []) {
-      const key = variable.valueFrom?.secretKeyRef;
-      if (key) named.push(["secret", key.name]);
-    }
+  const named = (spec.volumes ?? []).map((volume) =>
+    volume.configMap ? ["configMap", volume.configMap.name] : volume.secret ? ["secret", volume.secret.secretName]
+      : ["claim", volume.persistentVolumeClaim?.claimName]).filter(([, what]) => what);
   return named.filter(([kind, what]) => !known[kind].includes(what)).map(([kind, what]) => `${name} names a ${kind} ${what} that is not there`);
 }
 
+/** What is wrong with the pods of `object`; `known` has the names of what they may name, by kind, and their namespace's `level`. */
 export function podFaults(object, known) {
   const spec = object.spec?.template?.spec;
   if (!spec) return [];
@@ -45,5 +58,5 @@ export function podFaults(object, known) {
   const labels = object.spec.template.metadata.labels;
   for (const [key, value] of Object.entries(object.spec.selector?.matchLabels ?? {}))
     if (labels[key] !== value) faults.push(`${name} selects ${key}=${value}, which its pods are not`);
-  return [...faults, ...referenceFaults(name, spec, known)];
+  return [...faults, ...levelFaults(name, spec, known.level), ...referenceFaults(name, spec, known)];
 }
