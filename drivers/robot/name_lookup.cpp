@@ -89,10 +89,10 @@ void NameLookup::start(Handler handler) {
     shared_->executor = executor_;
     if (std::exchange(shared_->running, true)) return;
   }
-  boost::system::error_code not_numeric;
-  const auto address = asio::ip::make_address(host_, not_numeric);
-  if (!not_numeric) return shared_->answer({{address, port_}});
   try {
+    boost::system::error_code not_numeric;
+    const auto address = asio::ip::make_address(host_, not_numeric);
+    if (!not_numeric) return shared_->answer({{address, port_}});
     std::thread(&Shared::look_up, shared_, host_, port_).detach();
   } catch (...) {
     const std::lock_guard lock(shared_->mutex);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
+#include <new>
+#include <thread>
 #include <utility>
 
 #include "drivers/robot/dial.hpp"
@@ -38,8 +40,10 @@ MotionClient::MotionClient(const asio::any_io_executor& executor, MotionClientSe
 template <class Told>
 void MotionClient::feed(const Told& told) {
   const std::lock_guard lock(mutex_);
-  watch_.take(told);
-  if (machine_) obey(machine_->on_watch(Clock::now()));
+  carefully([&] {
+    watch_.take(told);
+    if (machine_) obey(machine_->on_watch(Clock::now()));
+  });
 }
 
 void MotionClient::take(const ControllerJoints& joints) { feed(joints); }
@@ -62,22 +66,37 @@ Status MotionClient::start(MotionOrder order, MotionEvents events) {
   if (machine_) return Error{MotionError::in_motion, "another motion is under way"};
   const auto now = Clock::now();
   if (auto doubt = watch_.doubt_before_start(now)) return *std::move(doubt);
-  events_ = std::move(events);
   machine_.emplace(std::move(order), settings_.motion, watch_);
-  obey(machine_->start(now));
+  events_ = std::move(events);
+  carefully([&] { obey(machine_->start(now)); });
   return Done{};
 }
 
 void MotionClient::stop(MotionError why) {
   const std::lock_guard lock(mutex_);
-  if (machine_) obey(machine_->stop(why, Clock::now()));
+  if (machine_) carefully([&] { obey(machine_->stop(why, Clock::now())); });
 }
 
 void MotionClient::shut_down() {
   const std::lock_guard lock(mutex_);
-  carry_out(motion_step::Close{});
-  if (machine_) carry_out(motion_step::Finish{{Error{MotionError::daemon_ends, {}}}});
+  end_now({Error{MotionError::daemon_ends, {}}});
   is_shut_down_ = true;
+}
+
+/// Completion handlers must not throw: the executor's thread would end. What the machine decided may be half
+/// done by then, so that it is not asked again: closing stops the robot.
+template <class Work>
+void MotionClient::carefully(Work work) {
+  try {
+    work();
+  } catch (const std::exception&) {
+    end_now({Error{MotionError::short_of_resources, {}}});
+  }
+}
+
+void MotionClient::end_now(const MotionEnd& end) {
+  close();
+  if (machine_) carry_out(motion_step::Finish{end});
 }
 
 void MotionClient::obey(MotionSteps steps) {
@@ -94,7 +113,7 @@ auto MotionClient::for_this_connection(Handler handler) {
           handler = std::move(handler)](auto&&... results) mutable {
     const std::lock_guard lock(self->mutex_);
     if (self->machine_ && connection == self->connection_)
-      handler(std::forward<decltype(results)>(results)...);
+      self->carefully([&] { handler(std::forward<decltype(results)>(results)...); });
   };
 }
 
@@ -128,9 +147,9 @@ void MotionClient::read_what_is_there() {
 }
 
 void MotionClient::carry_out(const motion_step::Send& send) {
-  tell(send.what);
   outbox_.push_back(std::make_shared<std::vector<std::byte>>(send.bytes));
   if (outbox_.size() == 1) write_next();
+  tell(send.what);  // after it: a log that is stuck must not hold up a stop
 }
 
 /// One message at a time, so that each leaves in one piece.
@@ -149,7 +168,7 @@ void MotionClient::carry_out(motion_step::ArmTimer timer) {
   timer_.async_wait([self = shared_from_this(), round = ++timer_round_](ErrorCode) {
     const std::lock_guard lock(self->mutex_);
     if (!self->machine_ || round != self->timer_round_) return;
-    self->obey(self->machine_->on_tick(Clock::now()));
+    self->carefully([&] { self->obey(self->machine_->on_tick(Clock::now())); });
   });
 }
 
@@ -158,19 +177,34 @@ void MotionClient::carry_out(motion_step::Reached reached) {
 }
 
 void MotionClient::carry_out(motion_step::Close) {
+  if (socket_.is_open()) tell("closing the motion port");
+  close();
+}
+
+void MotionClient::close() {
   ++connection_;
   lookup_.cancel();
   outbox_.clear();
-  if (socket_.is_open()) tell("closing the motion port");
   ErrorCode ignored;
   socket_.close(ignored);
 }
 
+/// Whoever waits for the end is told, if memory can be had at all: else every later motion would be refused.
 void MotionClient::carry_out(const motion_step::Finish& finish) {
+  constexpr int kAttempts = 20;
+  constexpr std::chrono::milliseconds kPause(10);
   ++timer_round_;
   timer_.cancel();
   machine_.reset();
-  if (const auto events = std::exchange(events_, {}); events.on_end) events.on_end(finish.end);
+  const auto events = std::exchange(events_, {});
+  for (int attempt = 1; events.on_end; ++attempt) {
+    try {
+      return events.on_end(finish.end);
+    } catch (const std::bad_alloc&) {
+      if (attempt == kAttempts) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 void MotionClient::tell(const std::string& what) const {

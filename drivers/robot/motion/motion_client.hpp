@@ -31,8 +31,8 @@ struct MotionClientSettings {
 Status check(const MotionClientSettings& settings);
 
 /// Carries out what MotionMachines decide: one TCP connection while a motion runs, none otherwise. It must be
-/// fed with all that the state link tells. Thread-safe. Must be owned by a shared_ptr; shut_down() before the
-/// executor's context ends.
+/// fed with all that the state link tells. Whatever fails, the motion ends and its end is told. Thread-safe.
+/// Must be owned by a shared_ptr; shut_down() before the executor's context ends.
 class MotionClient : public RobotMover, public std::enable_shared_from_this<MotionClient> {
  public:
   MotionClient(const boost::asio::any_io_executor& executor, MotionClientSettings settings);
@@ -57,6 +57,11 @@ class MotionClient : public RobotMover, public std::enable_shared_from_this<Moti
 
   template <class Told>
   void feed(const Told& told);
+
+  template <class Work>
+  void carefully(Work work);
+  void end_now(const MotionEnd& end);
+  void close();
 
   void obey(MotionSteps steps);
   void carry_out(motion_step::Connect);

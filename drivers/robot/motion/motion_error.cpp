@@ -41,6 +41,7 @@ constexpr std::pair<MotionError, std::string_view> kMessages[] = {
      "a joint left the commanded path or stopped following it: look at the robot, then at the joint order"},
     {not_arrived, "the robot did not come to rest at the posture in time: look at the robot"},
     {held_up, "this computer was too busy to watch the robot: give calibrd more processor time"},
+    {short_of_resources, "this computer ran short of memory or the like: give calibrd more of it"},
 
     {stop_requested, "stopped on request"},
     {daemon_ends, "stopped because the daemon ends"},

@@ -32,6 +32,7 @@ enum class MotionError {
   off_path,
   not_arrived,
   held_up,
+  short_of_resources,
   // Stopped by somebody
   stop_requested,
   daemon_ends,

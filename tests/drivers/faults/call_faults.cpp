@@ -47,11 +47,11 @@ Function* real(Function*, const char* name) {
 }  // namespace
 
 const char* name_of(Call call) {
-  constexpr std::array kNames{"socket",      "connect",     "getsockopt", "setsockopt", "ioctl",
-                              "getsockname", "getpeername", "epoll_ctl",  "epoll_wait", "recvmsg",
-                              "poll",        "getaddrinfo", "pthread",    "eventfd",    "memfd",
-                              "ftruncate",   "fstat",       "fcntl",      "mmap",       "socketpair",
-                              "spawn",       "recv",        "waitpid",    "allocation"};
+  constexpr std::array kNames{"socket",      "connect",     "getsockopt",  "setsockopt", "ioctl",
+                              "getsockname", "getpeername", "epoll_ctl",   "epoll_wait", "recvmsg",
+                              "send",        "poll",        "getaddrinfo", "pthread",    "eventfd",
+                              "memfd",       "ftruncate",   "fstat",       "fcntl",      "mmap",
+                              "socketpair",  "spawn",       "recv",        "waitpid",    "allocation"};
   return kNames.at(static_cast<std::size_t>(call));
 }
 
@@ -108,6 +108,11 @@ CALIBRD_FAULTY(waitpid, (pid_t id, int* status, int options), id, status, option
 ssize_t recvmsg(int fd, msghdr* message, int flags) {
   static const auto next = real(&::recvmsg, "recvmsg");
   return fails_now(Call::recvmsg) ? -1 : next(fd, message, flags);
+}
+
+ssize_t send(int fd, const void* bytes, size_t size, int flags) {
+  static const auto next = real(&::send, "send");
+  return fails_now(Call::send) ? -1 : next(fd, bytes, size, flags);
 }
 
 ssize_t recv(int fd, void* buffer, size_t size, int flags) {

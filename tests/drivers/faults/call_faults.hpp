@@ -17,6 +17,7 @@ enum class Call {
   epoll_ctl,
   epoll_wait,
   recvmsg,
+  send,
   poll,
   getaddrinfo,
   pthread_create,
