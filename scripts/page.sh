@@ -5,7 +5,7 @@
 # Drives the page in Debian's Chromium against the daemon and the simulated cell. Build first (scripts/test.sh does);
 # scripts/setup.sh --browser installs Chromium.
 #   scripts/page.sh test               the tests in a browser; pictures go to build/release/page
-#   scripts/page.sh figures [MINUTES]  prints the page's figures; memory is watched for so long (1; the issue's figure: 30)
+#   scripts/page.sh figures [MINUTES]  prints the page's figures; memory is watched for so long (1; 30 to judge it), once it has settled
 #   scripts/page.sh picture            makes docs/page.webp, the picture in the README (needs cwebp, of Debian's package webp)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -8,14 +8,15 @@ import { Faults, helpers, openBrowser, openPage, part } from "./lib/browser.mjs"
 import { Cell, SENSOR, waitUntil } from "./lib/cell.mjs";
 
 let cell, browser, page;
-const { text, says, show, unfair } = helpers(() => page);
+const { text, says, show, tab, unfair } = helpers(() => page);
 
 before(async () => {
   browser = await openBrowser();
   cell = await Cell.start("drift.healing=ask", "pose.max_unverified=20s");
   page = await openPage(browser, cell.url, new Faults());
   for (let count = 1; count <= 2; ++count) {
-    await cell.send("POST", `/api/v1/sensors/${SENSOR}/calibrations`);
+    // The one before is told as accepted a moment before its job ends.
+    await waitUntil(`calibration ${count} begins`, () => cell.send("POST", `/api/v1/sensors/${SENSOR}/calibrations`));
     await waitUntil(`calibration ${count} is served`, async () => (await cell.accepted()) === count, 240_000);
   }
   await says("state", "valid");
@@ -34,7 +35,12 @@ test("a lost daemon is shown within 2 s, what is old is called so, and the page 
   console.log(`a killed daemon is shown after ${Math.round(afterMs)} ms`);
   assert.ok(afterMs < 2000, `${afterMs} ms`);
   await says("state", /as of .* ago/, 5000);
+  assert.ok(await part(page, "copy").evaluate((button) => button.disabled), "a pose is offered");
+  assert.ok(await part(page, "pose").evaluate((place) => place.hidden), "an old pose is shown");
+  await tab("drift");
+  await says("drift-meaning", /silent/, 5000);
   await show("13-lost");
+  await tab("act");
   await cell.serve();
   await says("connection", "live", 10_000);
   await says("state", "valid");

@@ -5,7 +5,8 @@ import { readdirSync, statSync } from "node:fs";
 import { loadavg } from "node:os";
 import { join } from "node:path";
 import { Faults, keep, openBrowser, openPage, part, seriousFaults } from "./lib/browser.mjs";
-import { BUILD, Cell, SENSOR, sleep, waitUntil } from "./lib/cell.mjs";
+import { BUILD, Cell, SENSOR, waitUntil } from "./lib/cell.mjs";
+import { heapOver, slope } from "./lib/memory.mjs";
 
 const minutes = Number(process.argv[2] ?? 1);
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
@@ -41,43 +42,6 @@ async function framesPerSecond(page, seconds) {
   return (1000 * (after - before)) / (end - start);
 }
 
-/** Of script objects and what they hold (arrays, elements), after collecting what is garbage, MB: the least of some moments,
- * for a frame that just comes is no growth. */
-async function heap(session) {
-  const moments = [];
-  for (let moment = 0; moment < 9; ++moment) {
-    await session.send("HeapProfiler.collectGarbage");
-    const { usedSize, backingStorageSize = 0, embedderHeapUsedSize = 0 } = await session.send("Runtime.getHeapUsage");
-    moments.push((usedSize + backingStorageSize + embedderHeapUsedSize) / 1e6);
-    await sleep(130);
-  }
-  return Math.min(...moments);
-}
-
-/** Of a line through samples, one a minute, and its standard error: kB/min. */
-function slope(samples) {
-  const middle = (samples.length - 1) / 2;
-  const total = (of) => samples.reduce((sum, value, at) => sum + of(value, at - middle), 0);
-  const squares = total((_, x) => x * x) || 1;
-  const mean = total((value) => value) / samples.length;
-  const rise = total((value, x) => value * x) / squares;
-  const left = total((value, x) => (value - mean - rise * x) ** 2);
-  const error = Math.sqrt(left / Math.max(1, samples.length - 2) / squares);
-  return `${(1000 * rise).toFixed(0)} ± ${(1000 * error).toFixed(0)} kB/min`;
-}
-
-async function heapOver(page) {
-  const session = await page.context().newCDPSession(page);
-  await sleep(10_000); // the history and the charts have been fetched
-  const samples = [await heap(session)];
-  for (let minute = 0; minute < minutes; ++minute) {
-    await sleep(60_000);
-    samples.push(await heap(session));
-    console.error(`minute ${minute + 1}: ${samples.at(-1).toFixed(2)} MB`);
-  }
-  return samples;
-}
-
 async function measure(cell, browser) {
   const row = (what, value, wanted) => console.log(`${what.padEnd(58)} ${value.padEnd(44)} ${wanted}`);
   row("processes waiting for a processor (load average)", loadavg().map((load) => load.toFixed(1)).join(", "), "");
@@ -96,11 +60,12 @@ async function measure(cell, browser) {
   const points = await part(page, "cell").getAttribute("data-points");
   row(`3D view, 1280x720, software GL, ${points} points`, `${(await framesPerSecond(page, 10)).toFixed(1)} frames/s`, ">= 20");
   await keep(page, "figures");
-  const samples = await heapOver(page);
-  row(`script memory over ${minutes} min, first to last`, `${samples[0].toFixed(1)} to ${samples.at(-1).toFixed(1)} MB (most ${Math.max(...samples).toFixed(1)}), ${slope(samples)}`, "flat");
   row("serious faults of accessibility (axe-core)", String((await seriousFaults(page)).length), "0");
   row("console errors", String(faults.errors.length), "0");
   row("requests to other hosts", String(faults.foreign.length), "0");
+  await page.context().close();
+  const samples = await heapOver(cell.url, minutes);
+  row(`script memory over ${minutes} min, first to last`, `${samples[0].toFixed(1)} to ${samples.at(-1).toFixed(1)} MB (most ${Math.max(...samples).toFixed(1)}), ${slope(samples)}`, "flat");
 }
 
 const browser = await openBrowser();

@@ -10,12 +10,16 @@ const SILENCE_MS = 1200;
 const RETRY_MS = 500;
 /** Ages, checks and the drift statistic change without an event. */
 const REFRESH_MS = 1000;
+/** Joints may come while nothing else does: other windows of this browser can hold all connections that it grants a host. */
+const REFRESH_SILENCE_MS = 4000;
 
 /** Keeps the state of the page in step with the daemon, and says when it cannot. */
 export class Connection {
   private lastEventId = "";
   private lastSign = 0;
   private lastWatch = 0;
+  private lastRefresh = 0;
+  private isRefreshing = false;
   private wakeUp: () => void = () => undefined;
   private readonly refreshing = new Map<string, Promise<void>>();
 
@@ -73,14 +77,15 @@ export class Connection {
     if (session.scope === "open") return this.wantToken(this.client.token !== "");
     this.state.session.value = session;
     await this.refreshAll(AbortSignal.timeout(5 * SILENCE_MS));
-    this.lastSign = performance.now();
+    this.lastSign = this.lastRefresh = performance.now();
     this.state.connection.value = { kind: "live" };
     const watch = setInterval(() => this.watch(ending), 100);
-    const refresh = setInterval(() => void this.refreshAll(ending.signal).catch(() => undefined), REFRESH_MS);
+    const refresh = setInterval(() => void this.refreshInTime(ending.signal), REFRESH_MS);
     try {
       await Promise.race([this.followEvents(ending.signal), this.followJoints(ending.signal)]);
     } finally {
       ending.abort();
+      this.state.joints.value = null; // those of another run must not pass for new
       clearInterval(watch);
       clearInterval(refresh);
       if (document.hidden) this.state.connection.value = { kind: "connecting" }; // whoever follows the state lets go as well
@@ -90,9 +95,24 @@ export class Connection {
 
   private watch(ending: AbortController): void {
     const now = performance.now();
-    if (now - this.lastWatch > SILENCE_MS / 2) this.lastSign = now; // it is this tab that was held up: what has come is not read yet
+    if (now - this.lastWatch > SILENCE_MS / 2) this.lastSign = this.lastRefresh = now; // it is this tab that was held up: what has come is not read yet
     this.lastWatch = now;
-    if (document.hidden || now - this.lastSign > SILENCE_MS) ending.abort();
+    const isSilent = now - this.lastSign > SILENCE_MS || now - this.lastRefresh > REFRESH_SILENCE_MS;
+    if (document.hidden || isSilent) ending.abort();
+  }
+
+  /** One at a time: of a daemon that does not answer, or a browser without a connection left for it, none must pile up. */
+  private async refreshInTime(signal: AbortSignal): Promise<void> {
+    if (this.isRefreshing) return;
+    this.isRefreshing = true;
+    try {
+      await this.refreshAll(AbortSignal.any([signal, AbortSignal.timeout(REFRESH_SILENCE_MS)]));
+      this.lastRefresh = performance.now();
+    } catch {
+      // What it means is for the watch to say.
+    } finally {
+      this.isRefreshing = false;
+    }
   }
 
   private followEvents(signal: AbortSignal): Promise<void> {
@@ -125,9 +145,19 @@ export class Connection {
   private async refreshAll(signal: AbortSignal): Promise<void> {
     const cell = await this.client.get<Cell>("/api/v1/cell", signal);
     await Promise.all(cell.sensors.map((sensor) => this.refreshSensor(sensor.id, signal)));
+    this.dropOthers(cell);
     this.state.cell.value = cell;
     if (!cell.sensors.some((sensor) => sensor.id === this.state.chosen.value))
       this.state.chosen.value = cell.sensors[0]?.id ?? "";
+  }
+
+  /** Reloads the page where the daemon that answers is another one than the page was made for; forgets sensors that are gone. */
+  private dropOthers(cell: Cell): void {
+    const before = this.state.cell.value;
+    if (before && identityOf(before) !== identityOf(cell)) return location.reload();
+    const ids = new Set(cell.sensors.map((sensor) => sensor.id));
+    const sensors = this.state.sensors.value;
+    if ([...sensors.keys()].some((id) => !ids.has(id))) this.state.sensors.value = new Map([...sensors].filter(([id]) => ids.has(id)));
   }
 
   /** One at a time for each sensor: answers that overtake each other would show the past. */
@@ -156,6 +186,11 @@ export class Connection {
     pose.passed_check_age_s = numberOf(response.headers.get("Calibrd-Passed-Check-Age-S"));
     return pose;
   }
+}
+
+/** What the page has taken from the cell once and for all. */
+function identityOf({ version, robot, sensors }: Cell): string {
+  return JSON.stringify([version, robot.model, robot.base_frame, robot.joint_names, sensors.map(({ id, camera }) => [id, camera])]);
 }
 
 function numberOf(header: string | null): number | null {

@@ -30,6 +30,7 @@ export class FrameFeed {
     state.connection.follow(() => this.restart());
     state.chosen.follow(() => {
       this.frame.value = null;
+      this.absence.value = null;
       this.restart();
     });
   }

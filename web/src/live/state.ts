@@ -9,6 +9,9 @@ export type ConnectionState =
   | { kind: "token"; reason: string }
   | { kind: "lost"; since: number };
 
+/** Answers of the daemon are a second old at most; older ones are shown as old. */
+const STALE_MS = 2500;
+
 /** What is known of one sensor, and when it was heard (performance.now()). */
 export interface SensorState {
   pose: Pose;
@@ -41,6 +44,12 @@ export class CellState {
 
   sensor(id: string): SensorState | undefined {
     return this.sensors.value.get(id);
+  }
+
+  /** What is known of it may hold no longer: nothing of it is shown as if it did, and no pose is offered. */
+  isOld(id: string): boolean {
+    const sensor = this.sensor(id);
+    return !this.isLive || !sensor || performance.now() - sensor.heardAt > STALE_MS;
   }
 
   get chosenSensor(): SensorState | undefined {

@@ -121,12 +121,13 @@ class JobLine {
 /** A calibration that was made after a move and waits for somebody to decide. */
 function showCandidate(context: Context, place: HTMLElement, id: string | null): void {
   place.hidden = id === null;
-  if ((place.dataset["id"] ?? "") === (id ?? "")) return;
-  place.dataset["id"] = id ?? "";
+  const isAllowed = context.state.may("calibrate"); // which a new token changes
+  const key = `${id ?? ""} ${isAllowed}`;
+  if (place.dataset["key"] === key) return;
+  place.dataset["key"] = key;
   if (!id) return;
   const accept: HTMLButtonElement = h("button", { class: "primary", "data-test": "accept", click: () => void perform(context, accept, () => activate(context, id)) }, "Accept…");
   const reject: HTMLButtonElement = h("button", { class: "danger", "data-test": "reject", click: () => void perform(context, reject, () => decline(context, id)) }, "Reject…");
-  const isAllowed = context.state.may("calibrate");
   place.replaceChildren(
     h("p", {}, `The sensor has moved. Calibration ${id} has found where it is now and waits to be accepted.`),
     ...(isAllowed ? [h("div", { class: "buttons" }, accept, reject)] : []),
@@ -144,7 +145,7 @@ async function decline(context: Context, id: string): Promise<void> {
 export async function activate(context: Context, id: string): Promise<void> {
   const isWanted = await ask({
     title: "Serve this pose?",
-    text: `The pose of calibration ${id} replaces the one being served. It is unverified until a check against the live sensor agrees.`,
+    text: `The pose of calibration ${id} replaces the one being served for sensor ${context.state.chosen.value}. It is unverified until a check against the live sensor agrees.`,
     action: "Serve it",
     isDestructive: true,
   });

@@ -18,6 +18,9 @@ const VIRTUAL = rgbOf("#c04bd8");
 const BEFORE = rgbOf("#f0852d");
 const AFTER = rgbOf("#1fa971");
 
+/** A model that could not be shown is asked for again after so long. */
+const RELOAD_MS = 30_000;
+
 /** The cell in three dimensions. */
 export class CellView {
   private readonly measured = new Cloud("depth");
@@ -29,6 +32,7 @@ export class CellView {
   private robot: RobotView | null = null;
   private ghost: RobotView | null = null;
   private isLoading = false;
+  private nextLoad = 0;
   private comparison: Comparison | null = null;
   private share = 1;
 
@@ -94,6 +98,7 @@ export class CellView {
     state.joints.follow(() => this.placeRobot());
     state.connection.follow(() => this.placeRobot());
     state.sensors.follow(() => this.placeFrusta());
+    setInterval(() => this.placeFrusta(), 1000); // silence, too, is news
     frames.frame.follow(() => this.takeFrame());
     suggestion.follow(() => this.placeGhost());
     heat.follow((paint) => {
@@ -104,8 +109,9 @@ export class CellView {
 
   private async loadRobot(): Promise<void> {
     const robot = this.context.state.cell.value?.robot;
-    if (!robot || this.robot || this.isLoading) return;
+    if (!robot || this.robot || this.isLoading || performance.now() < this.nextLoad) return;
     this.isLoading = true;
+    this.nextLoad = performance.now() + RELOAD_MS;
     try {
       this.robot = await RobotView.load(this.context.client, robot.base_frame, robot.joint_names);
       if (this.picture.isSoftware) this.robot.leaveToProcessor();
@@ -123,9 +129,9 @@ export class CellView {
 
   private placeRobot(): void {
     const { joints, isLive } = { joints: this.context.state.joints.value, isLive: this.context.state.isLive };
-    if (!this.robot || !joints?.positions_rad) return;
-    this.robot.setJoints(joints.positions_rad);
-    this.robot.setStale(!isLive || joints.stale || joints.frozen);
+    if (!this.robot) return;
+    if (joints?.positions_rad) this.robot.setJoints(joints.positions_rad);
+    this.robot.setStale(!isLive || !joints?.positions_rad || joints.stale || joints.frozen);
     this.drawRobot();
   }
 
@@ -152,6 +158,7 @@ export class CellView {
   }
 
   private placeFrusta(): void {
+    for (const [id, frustum] of this.frusta) frustum.visible &&= !!this.context.state.sensor(id);
     for (const sensor of this.context.state.cell.value?.sensors ?? []) {
       const pose = this.context.state.sensor(sensor.id)?.pose;
       const known = pose?.valid ? pose : pose?.last_known;
@@ -163,7 +170,7 @@ export class CellView {
         this.frusta.set(sensor.id, frustum);
         this.picture.scene.add(frustum);
       }
-      const trust = pose.valid ? "valid" : pose.state === "drifted" ? "wrong" : "doubtful";
+      const trust = pose.valid && !this.context.state.isOld(sensor.id) ? "valid" : pose.state === "drifted" ? "wrong" : "doubtful";
       frustum.place(known.T_base_sensor, TRUST_COLOURS[trust]);
     }
     this.picture.draw();

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Drift } from "../api/types";
 import { Chart } from "../ui/chart";
-import { h, setText } from "../ui/dom";
+import { h, setAttribute, setText } from "../ui/dom";
 import { duration, mm } from "../ui/format";
 import type { Context } from "./context";
+
+const OLD = "The daemon is silent: what is shown here is old, and says nothing of now.";
 
 /** What the watch over the pose has seen in the last ten minutes. */
 export class DriftPanel {
@@ -34,9 +36,11 @@ export class DriftPanel {
   constructor(private readonly context: Context) {
     context.state.sensors.follow(() => this.refresh());
     context.state.chosen.follow(() => this.refresh());
+    setInterval(() => this.refresh(), 1000); // silence, too, is news
   }
 
   resize(): void {
+    this.refresh(); // nothing was drawn while the tab was hidden
     this.statistic.resize();
     this.shift.resize();
   }
@@ -44,8 +48,10 @@ export class DriftPanel {
   private refresh(): void {
     const drift = this.context.state.chosenSensor?.drift;
     if (!drift || this.element.hidden) return;
+    const isOld = this.context.state.isOld(this.context.state.chosen.value);
+    setAttribute(this.element, "data-old", String(isOld));
     const depth = Math.abs(drift.depth_offset_change_m) > 0.001 ? ` The range reads ${mm(drift.depth_offset_change_m, 1)} more than when the pose was found.` : "";
-    setText(this.meaning, drift.watched ? drift.meaning + depth : "There is no pose to watch.");
+    setText(this.meaning, isOld ? OLD : drift.watched ? drift.meaning + depth : "There is no pose to watch.");
     setText(this.healing, healingText(drift));
     const ages = drift.series.map((sample) => -sample.age_s);
     this.statistic.show(ages, [drift.series.map((sample) => sample.statistic), ages.map(() => drift.threshold)]);

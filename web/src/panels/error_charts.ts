@@ -32,7 +32,7 @@ export class ErrorCharts {
   /** Newest first. */
   show(history: readonly Calibration[]): void {
     const found = history.filter((calibration) => calibration.result?.T_base_sensor).reverse();
-    const served = found.find((calibration) => calibration.current) ?? found.at(-1);
+    const served = found.find((calibration) => calibration.current);
     const reference = served?.result?.T_base_sensor;
     const numbers = found.map((_, index) => index + 1);
     const results = found.map((calibration) => calibration.result as CalibrationResult);

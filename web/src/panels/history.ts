@@ -35,7 +35,7 @@ export class HistoryPanel {
       this.charts.element,
     );
     const { state } = context;
-    state.chosen.follow(() => this.paint("", null));
+    state.chosen.follow(() => this.forget());
     context.frames.frame.follow(() => this.repaint());
     for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
   }
@@ -47,13 +47,24 @@ export class HistoryPanel {
   private async refresh(): Promise<void> {
     const { state, calibrations, notices } = this.context;
     if (!state.isLive || !state.chosen.value) return;
+    const sensor = state.chosen.value;
     try {
-      const history = await calibrations.history(state.chosen.value, SHOWN);
+      const history = await calibrations.history(sensor, SHOWN);
+      if (sensor !== state.chosen.value) return; // another one is looked at by now
       this.rows.replaceChildren(...history.map((calibration) => this.row(calibration)));
       this.charts.show(history);
     } catch (failure) {
       if (state.isLive) notices.tell(explain(failure), true);
     }
+  }
+
+  /** What is there is of another sensor. */
+  private forget(): void {
+    this.paint("", null);
+    this.compared.length = 0;
+    this.rows.replaceChildren();
+    this.diff.replaceChildren();
+    this.charts.show([]);
   }
 
   private row(calibration: Calibration): HTMLElement {
@@ -124,7 +135,7 @@ export class HistoryPanel {
     if (!first || !second) return this.diff.replaceChildren();
     await perform(this.context, null, async () => {
       const diff = await this.context.client.get<CalibrationDiff>(`/api/v1/calibrations/${first}/diff/${second}`);
-      this.diff.replaceChildren(...describe(diff));
+      if (this.compared[0] === first && this.compared[1] === second) this.diff.replaceChildren(...describe(diff));
     });
   }
 

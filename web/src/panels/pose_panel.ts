@@ -8,6 +8,8 @@ import { axesPicture } from "./axes_picture";
 /** As docs/pose_formats.md lists them. */
 const FORMATS = ["matrix", "quaternion", "rotvec", "ros2", "ros1", "urdf", "kuka", "fanuc", "yaskawa", "mitsubishi", "kawasaki", "abb", "ur", "halcon", "opencv"];
 
+const PATIENCE_MS = 2000;
+
 /** The pose as a robot controller or a library takes it, to be copied. Only a valid pose can be taken. */
 export function posePanel(context: Context): HTMLElement {
   const format = h("select", { "aria-label": "Format", "data-test": "format" }, ...FORMATS.map((name) => h("option", { value: name }, name)));
@@ -18,34 +20,38 @@ export function posePanel(context: Context): HTMLElement {
   const panel = h("section", {}, h("div", { class: "buttons" }, format, copy), refusal, text, frames);
   let wanted = "";
   const fetchPose = async (): Promise<void> => {
-    const sensor = context.state.chosenSensor;
-    const key = [context.state.chosen.value, format.value, sensor?.pose.calibration, sensor?.pose.valid, context.state.isLive].join();
+    const { state } = context;
+    const sensor = state.chosenSensor;
+    const key = [state.chosen.value, format.value, sensor?.pose.calibration, sensor?.pose.valid, state.isOld(state.chosen.value)].join();
     if (!sensor || key === wanted) return;
     wanted = key;
+    copy.disabled = text.hidden = true; // what stands there is of another sensor, format or calibration
     const answer = await takePose(context, format.value);
     if (key !== wanted) return; // another one has been asked for meanwhile
     setText(text, answer.text);
     setText(refusal, answer.refusal);
     copy.disabled = text.hidden = !answer.text;
+    if (answer.isFailure) wanted = ""; // it is asked for again with the next news of the sensor
     frames.replaceChildren(...spellOut(context, format.value));
   };
   format.addEventListener("change", () => void fetchPose());
   context.state.sensors.follow(() => void fetchPose());
   context.state.chosen.follow(() => void fetchPose());
   context.state.connection.follow(() => void fetchPose());
+  setInterval(() => void fetchPose(), 500); // silence, too, is news
   return panel;
 }
 
 /** The daemon's own bytes: what is copied is what cell software would get. */
-async function takePose(context: Context, format: string): Promise<{ text: string; refusal: string }> {
-  if (!context.state.isLive) return { text: "", refusal: "The daemon is silent: no pose can be taken." };
+async function takePose(context: Context, format: string): Promise<{ text: string; refusal: string; isFailure?: boolean }> {
+  if (context.state.isOld(context.state.chosen.value)) return { text: "", refusal: "The daemon is silent: no pose can be taken." };
   const pose = context.state.chosenSensor?.pose;
   if (!pose?.valid) return { text: "", refusal: `No pose to take: it is not valid. ${pose?.reason ?? ""}` };
   try {
-    const response = await context.client.fetch(`${sensorPath(context)}/pose?format=${format}`);
+    const response = await context.client.fetch(`${sensorPath(context)}/pose?format=${format}`, { signal: AbortSignal.timeout(PATIENCE_MS) });
     return { text: await response.text(), refusal: "" };
   } catch (failure) {
-    return { text: "", refusal: explain(failure) };
+    return { text: "", refusal: explain(failure), isFailure: true };
   }
 }
 

@@ -7,7 +7,9 @@ import { type Context, sensorPath } from "./context";
 
 /** Asks where the robot should go next; the answer is drawn as a ghost. */
 export async function suggestPosture(context: Context): Promise<void> {
-  context.suggestion.value = await context.client.get<NextPosture>(`${sensorPath(context)}/next-posture`);
+  const sensor = context.state.chosen.value;
+  const posture = await context.client.get<NextPosture>(`${sensorPath(context)}/next-posture`);
+  if (sensor === context.state.chosen.value) context.suggestion.value = posture;
 }
 
 /** The suggested posture in numbers, while there is one. */

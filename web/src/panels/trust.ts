@@ -7,14 +7,16 @@ import { duration, mm, mrad } from "../ui/format";
 import { type Context, perform } from "./context";
 import { suggestPosture } from "./suggestion";
 
-/** Answers of the daemon are a second old at most; older ones are shown as old. */
-const STALE_MS = 2500;
-
 /** One line of trust for every sensor: may its pose be used, how good is it, why not, what to do. */
 export function trustPanel(context: Context): HTMLElement {
   const list = h("div", { class: "trust", role: "group", "aria-label": "Sensors" });
   const lines = new Map<string, TrustLine>();
   const refresh = (): void => {
+    for (const [id, line] of lines)
+      if (!context.state.sensor(id)) {
+        line.element.remove();
+        lines.delete(id);
+      }
     for (const [id, sensor] of context.state.sensors.value) {
       let line = lines.get(id);
       if (!line) {
@@ -73,7 +75,7 @@ class TrustLine {
   show(sensor: SensorState): void {
     const { pose, drift } = sensor;
     const silentMs = performance.now() - sensor.heardAt;
-    const isOld = !this.context.state.isLive || silentMs > STALE_MS;
+    const isOld = this.context.state.isOld(this.id);
     const isUsable = pose.valid && !isOld;
     setAttribute(this.element, "data-trust", isOld ? "old" : isUsable ? "valid" : pose.state);
     setAttribute(this.element, "data-chosen", String(this.context.state.chosen.value === this.id));

@@ -104,7 +104,9 @@ function comparisonControls(context: Context, view: CellView): HTMLElement {
   const fetchIt = async (): Promise<void> => {
     const { chosen, isLive } = { chosen: context.state.chosen.value, isLive: context.state.isLive };
     if (!chosen || !isLive) return;
-    comparison = lastComparison(await context.calibrations.history(chosen, 10).catch(() => []));
+    const found = lastComparison(await context.calibrations.history(chosen, 10).catch(() => []));
+    if (chosen !== context.state.chosen.value) return; // another sensor is looked at by now
+    comparison = found;
     group.hidden = comparison === null;
     group.title = comparison ? `before: ${comparison.meaning}` : "";
     apply();

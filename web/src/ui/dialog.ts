@@ -17,7 +17,7 @@ export interface Question {
 export function ask(question: Question): Promise<boolean> {
   return new Promise((resolve) => {
     const go = h("button", { class: question.isDestructive ? "danger" : "primary", value: "go", type: "submit" }, question.action);
-    const dialog = h(
+    const dialog: HTMLDialogElement = h(
       "dialog",
       { "aria-labelledby": "question-title" },
       h(
@@ -26,7 +26,7 @@ export function ask(question: Question): Promise<boolean> {
         h("h2", { id: "question-title" }, question.title),
         h("p", {}, question.text),
         ...(question.fields ?? []),
-        h("div", { class: "buttons" }, h("button", { value: "stay", type: "submit" }, "Cancel"), go),
+        h("div", { class: "buttons" }, h("button", { value: "stay", type: "button", click: () => dialog.close("stay") }, "Cancel"), go),
       ),
     );
     dialog.addEventListener("close", () => {
@@ -39,11 +39,15 @@ export function ask(question: Question): Promise<boolean> {
   });
 }
 
+const MOST_ERRORS = 4;
+
 /** Says what has happened, for people and screen readers. */
 export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
 
+  /** What is said already is not said twice; of errors the newest stay until they are dismissed. */
   tell(text: string, isError = false): void {
+    for (const said of [...this.element.children]) if (said.firstElementChild?.textContent === text) said.remove();
     const notice = h(
       "div",
       { class: isError ? "notice error" : "notice" },
@@ -51,6 +55,8 @@ export class Notices {
       h("button", { "aria-label": "Dismiss", click: () => notice.remove() }, "×"),
     );
     this.element.append(notice);
+    const errors = [...this.element.querySelectorAll(".error")];
+    for (const old of errors.slice(0, Math.max(0, errors.length - MOST_ERRORS))) old.remove();
     if (!isError) setTimeout(() => notice.remove(), 8000);
   }
 }

@@ -36,6 +36,7 @@ export class RobotView {
     loader.parseVisual = false; // the daemon's surfaces come instead: nothing of the URDF's paths is fetched
     loader.parseCollision = false;
     const robot = loader.parse(await (await client.fetch("/api/v1/robot/urdf")).text());
+    unlimited(robot);
     const meshes = new Map<string, Mesh>();
     await Promise.all(Object.keys(robot.links).map((name) => addSurface(client, robot, name, meshes)));
     robot.updateMatrixWorld(true);
@@ -89,7 +90,7 @@ export class RobotView {
 
   /** A second one, to show where the robot could be. */
   ghost(): RobotView {
-    const robot = this.robot.clone() as URDFRobot;
+    const robot = unlimited(this.robot.clone() as URDFRobot);
     const meshes = new Map<string, Mesh>();
     for (const name of this.meshes.keys()) {
       const mesh = robot.links[name]?.children.find((child): child is Mesh => child instanceof Mesh);
@@ -122,6 +123,12 @@ export class RobotView {
       material.needsUpdate = true;
     }
   }
+}
+
+/** A joint beyond the limits of its URDF is shown where it is, as the daemon has it. */
+function unlimited(robot: URDFRobot): URDFRobot {
+  for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;
+  return robot;
 }
 
 async function addSurface(client: Client, robot: URDFRobot, name: string, meshes: Map<string, Mesh>): Promise<void> {

@@ -8,7 +8,8 @@ import { chromium } from "playwright-core";
 import { waitUntil } from "./cell.mjs";
 
 const OUT = process.env.CALIBRD_PAGE_OUT ?? "/tmp/calibrd-page";
-const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+export const EXECUTABLE = process.env.CALIBRD_CHROMIUM ?? "/usr/bin/chromium";
+export const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
 /** The browser reports every 4xx; a pose may end between the page's hearing of it and asking for it in a format. */
 const isOfAPoseThatEnds = (message) => /409/.test(message.text()) && /\/pose\?format=/.test(message.location().url);
@@ -29,7 +30,7 @@ export class Faults {
 }
 
 export async function openBrowser(...flags) {
-  return chromium.launch({ executablePath: process.env.CALIBRD_CHROMIUM ?? "/usr/bin/chromium", args: [...FLAGS, ...flags] });
+  return chromium.launch({ executablePath: EXECUTABLE, args: [...FLAGS, ...flags] });
 }
 
 /** A page of its own, with a session storage of its own. */
