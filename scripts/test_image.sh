@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Builds docker/Dockerfile with buildah, without a Docker engine, runs its image as the user it has, calibrates the
-# simulated cell over HTTP, stops the daemon, starts it again and finds the pose. As root; the first time takes an hour of
-# processor time (a Debian 13 by debootstrap, calibrd built and its unit tests run in it).
+# simulated cell over HTTP, stops the daemon, starts it again and finds the pose; the collector's image is run as far as its
+# version. As root; the first time takes an hour of processor time (a Debian 13 by debootstrap, calibrd built and its unit tests
+# run in it).
 #   scripts/test_image.sh               ends with 0 when all of it is as it should be
 #   scripts/test_image.sh --no-tests    builds without the unit tests, in half the time
 # It leaves the Debian 13 package that the image has installed in build/package-debian13.
@@ -153,6 +154,17 @@ check_without_configuration() {
   "${kRun[@]}" calibrd-test-plain -- sh -c '! command -v g++ && ! command -v node' >/dev/null || die "it ships what only building needs"
 }
 
+# Its program starts, with the libraries that are there, as the user that it has.
+check_collector() {
+  local config told
+  config=$(buildah inspect --type image localhost/calibrd-collector | jq -r '.Docker.config.User + " " + .Docker.config.Entrypoint[0]')
+  [ "$config" = "$kUser:$kUser calibrd-collector" ] || die "the collector's image runs $config"
+  buildah from --name calibrd-test-collector localhost/calibrd-collector >/dev/null
+  containers+=(calibrd-test-collector)
+  told=$("${kRun[@]}" calibrd-test-collector -- calibrd-collector --version) || die "the collector does not start in its image"
+  [[ "$told" =~ ^calibrd-collector\ [0-9]+\.[0-9]+ ]] || die "the collector says: $told"
+}
+
 tests=ON
 case ${1:-} in '') ;; --no-tests) tests=OFF ;; *) echo "test_image.sh: unknown option '$1'. Options: --no-tests" >&2 && exit 2 ;; esac
 work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-image.XXXXXX")
@@ -168,6 +180,7 @@ build collector localhost/calibrd-collector
 keep_package
 check_image
 check_without_configuration
+check_collector
 chmod 755 "$work"
 install -d -o $kUser -g $kUser -m 0700 "$work/world" "$work/data"
 container calibrd-test-cell localhost/calibrd-demo

@@ -135,6 +135,10 @@ check_unit() {
   say "systemd-analyze security: ${exposure#→ }"
   systemd-analyze security --offline=true --root="$root" --no-pager --threshold=30 calibrd.service >/dev/null ||
     die "the unit is more exposed than 3.0"
+  # In a copy: what enabling leaves is no part of the inventory. It is not started: no systemd runs in the root.
+  install -D -t "$work/enabled/usr/lib/systemd/system" "$root/usr/lib/systemd/system/calibrd.service"
+  systemctl --root="$work/enabled" --quiet enable calibrd.service 2>"$work/enable.log" || die "the unit cannot be enabled"
+  [ -L "$work/enabled/etc/systemd/system/multi-user.target.wants/calibrd.service" ] || die "the unit, enabled, is wanted by nothing"
 }
 
 # The simulator stays outside; what it shows of itself, and the sensor's driver, are put into the root as a user would.
@@ -162,6 +166,18 @@ edit_configuration() {
     -e 's|^host = .*|host = "127.0.0.1"|' -e "s|^# port = 50241.*|port = $(sed -n 's/.*controller=127.0.0.1:\([0-9]*\).*/\1/p' "$work/ready")|" \
     -e 's|^# uri = .*|driver_directory = "/srv/cell/openni"|' "$root/etc/calibrd/calibrd.toml"
   cp "$root/etc/calibrd/calibrd.toml" "$work/edited.toml"
+}
+
+# What docs/deployment.md has one ask before the first start.
+check_first_steps() {
+  local status=0
+  as_daemon calibrd-sensor --list >"$work/list.log" 2>&1 || status=$?
+  if [ $status = 3 ]; then
+    grep -q 'no depth sensor matches' "$work/list.log" || die "calibrd-sensor --list does not say that there is no sensor"
+  else
+    [ $status = 0 ] || die "calibrd-sensor --list ends with status $status"
+  fi
+  as_daemon calibrd serve --check-config >"$work/check.log" 2>&1 || die "the configuration is refused"
 }
 
 start_daemon() {
@@ -236,6 +252,7 @@ install_package "$earlier"
 check_unit
 bring_cell
 edit_configuration
+check_first_steps
 say "the daemon runs as its user"
 start_daemon
 calibrate

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <poll.h>
+
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
@@ -37,6 +39,11 @@ class Connection {
   void drop_unsent_at_close(bool drop) {
     boost::system::error_code ignored;
     tcp_.socket().set_option(boost::asio::socket_base::linger(drop, 0), ignored);
+  }
+  /// The client has closed the connection, or its half of it. Nothing is read.
+  bool has_left() {
+    pollfd socket{tcp_.socket().native_handle(), POLLRDHUP, 0};
+    return ::poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
   }
   bool has_tls() const { return tls_.has_value(); }
 

@@ -27,11 +27,12 @@ struct Entrance {
 
 struct HttpServerSettings {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;                         ///< 0: any free one
-  int max_connections = 64;                          ///< more are answered 503 and closed
-  int workers = 4;                                   ///< threads for slow routes
-  std::chrono::milliseconds idle_timeout{60'000};    ///< between two requests of a connection
-  std::chrono::milliseconds header_timeout{10'000};  ///< from the first byte to the end of the header
+  std::uint16_t port = 8080;                       ///< 0: any free one
+  int max_connections = 64;                        ///< more are answered 503 and closed
+  int workers = 4;                                 ///< threads for slow routes
+  std::chrono::milliseconds idle_timeout{60'000};  ///< between two requests of a connection
+  std::chrono::milliseconds header_timeout{
+      10'000};  ///< until the first request of a connection begins, and from there to the end of its header
   std::chrono::milliseconds body_timeout{10'000};
   std::chrono::milliseconds write_timeout{60'000};   ///< for a whole answer
   std::chrono::milliseconds stall_timeout{10'000};   ///< for each 64 KiB of it, about

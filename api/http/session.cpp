@@ -73,13 +73,15 @@ void Session::end_when_idle() {
 asio::awaitable<bool> Session::await_request() {
   if (buffer_.size() > 0) co_return true;
   idle_ = true;
-  stream_.expires_after(context_.settings.idle_timeout);
+  // Who connects to ask for nothing holds a place that others want.
+  stream_.expires_after(has_asked_ ? context_.settings.idle_timeout : context_.settings.header_timeout);
   beast::error_code failure;
   const auto space = buffer_.prepare(kReadAtOnce);
   const auto size =
       co_await stream_.async_read_some(space, asio::redirect_error(asio::use_awaitable, failure));
   buffer_.commit(size);
   idle_ = false;
+  has_asked_ = true;
   co_return !failure && size > 0;
 }
 
@@ -225,12 +227,14 @@ asio::awaitable<Response> Session::dispatch(const Request& request) {
   co_return co_await asio::co_spawn(context_.workers, std::move(work), asio::use_awaitable);
 }
 
-/// Routes hold no connection: waiting for a change is asking again, at a pace a client does not notice.
+/// Routes hold no connection: waiting for a change is asking again, at a pace a client does not notice. Who
+/// has left, as a client with less patience than it asked for, or may no longer know, is not waited for.
 asio::awaitable<Response> Session::ask_again(const Request& request, Response response) {
   const auto deadline = std::chrono::steady_clock::now() + response.worth_waiting;
   asio::steady_timer pause(stream_.get_executor());
-  while (response.worth_waiting.count() > 0 && !context_.stopping &&
-         std::chrono::steady_clock::now() < deadline) {
+  const auto scope = context_.router.scope(request);
+  while (response.worth_waiting.count() > 0 && !context_.stopping && !stream_.has_left() &&
+         context_.door->still_admits(request, scope, peer_) && std::chrono::steady_clock::now() < deadline) {
     pause.expires_after(kAskAgainAfter);
     co_await pause.async_wait(asio::use_awaitable);
     response = co_await dispatch(request);

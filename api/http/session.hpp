@@ -72,6 +72,7 @@ class Session {
   boost::beast::flat_buffer buffer_{kMostBuffered};
   SessionContext& context_;
   bool idle_ = true;
+  bool has_asked_ = false;  // a request has come on this connection
   std::string request_id_;  // of the request being read or answered
 };
 

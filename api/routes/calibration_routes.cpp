@@ -41,7 +41,12 @@ bool asks_for_no_guess(const json::object& body) {
 Result<std::optional<Pose>> read_guess(const json::object& body) {
   const auto* guess = body.if_contains("guess");
   if (!guess || guess->is_null()) return std::optional<Pose>();
-  if (const auto* object = guess->if_object()) guess = object->if_contains("T_base_sensor");
+  if (const auto* object = guess->if_object()) {
+    const auto* unit = object->if_contains("unit");  // as the answers that hold a pose have it
+    if (unit && *unit != "m")
+      return fail(ApiError::bad_value, "guess: metres are wanted, unit must be \"m\"");
+    guess = object->if_contains("T_base_sensor");
+  }
   const auto numbers = guess ? flat_numbers(*guess) : std::nullopt;
   if (!numbers) return fail(ApiError::bad_value, "guess: a list of 7, 12 or 16 numbers is wanted");
   const auto pose = pose_of_numbers(*numbers);

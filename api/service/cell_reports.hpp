@@ -12,7 +12,7 @@ struct SensorObstacles {
   std::string sensor_id;
   std::string code;    ///< why nothing could be looked for, stable: "pose_not_valid", …; empty: it was
   std::string reason;  ///< in words, and what to do
-  std::optional<Clock::time_point> stamp;   ///< of the frame, and of its joints, which are interpolated to it
+  std::optional<Clock::time_point> stamp;   ///< exposure of the frame, which its joints are interpolated to
   std::vector<double> joint_positions_rad;  ///< of that moment
   Seconds age{0};
   std::string calibration_id;
@@ -36,7 +36,7 @@ struct MergedCloud {
     std::string sensor_id;
     std::string calibration_id;
     Pose T_base_sensor;
-    Clock::time_point stamp;                  ///< of the frame, and of its joints
+    Clock::time_point stamp;                  ///< exposure of the frame, and of its joints
     std::vector<double> joint_positions_rad;  ///< of that moment; empty where they are not known
     std::size_t points = 0;
   };

@@ -1,42 +1,16 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-#include "api/http/http_server.hpp"
-
-#include <gtest/gtest.h>
-
 #include <future>
 #include <thread>
 
 #include "api/http/http_server_error.hpp"
 #include "api/routes/responses.hpp"
-#include "api/routes/routes.hpp"
-#include "tests/api/fake_cell.hpp"
-#include "tests/api/fake_operations.hpp"
-#include "tests/api/http/client.hpp"
+#include "tests/api/http/http_server_fixture.hpp"
 
 namespace calibrd::api {
 namespace {
 
 using namespace std::chrono_literals;
-
-class HttpServerTest : public ::testing::Test {
- protected:
-  void start(HttpServerSettings settings = {}) {
-    settings.port = 0;
-    auto started = HttpServer::start(
-        settings, router_, [this](const AccessRecord& record) { log_.push_back(record); }, &watch_);
-    ASSERT_TRUE(started) << started.error().message();
-    server_ = *std::move(started);
-  }
-
-  FakeCell cell_;
-  EventHub events_{"run"};
-  FakeOperations operations_;
-  Router router_ = make_routes(cell_, events_, operations_);
-  std::vector<AccessRecord> log_;
-  HttpWatch watch_;
-  std::unique_ptr<HttpServer> server_;
-};
 
 TEST_F(HttpServerTest, ServesManyRequestsOnOneConnection) {
   start();
@@ -133,24 +107,6 @@ TEST_F(HttpServerTest, AListenerThatGoesAwayGivesItsPlaceBack) {
     std::this_thread::sleep_for(20ms);
   }
   FAIL() << "its place is still taken";
-}
-
-TEST_F(HttpServerTest, WaitEndsWhenThePoseChangesOrTheTimeIsUp) {
-  cell_.make_calibrated();
-  start();
-  Client client(server_->port());
-  const auto ask = [&](const std::string& tag, const std::string& wait) {
-    client.send("GET /api/v1/sensors/kinect2/pose?wait=" + wait +
-                " HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: " + tag + "\r\n\r\n");
-  };
-  const auto tag = std::string(client.get("/api/v1/sensors/kinect2/pose")[http::field::etag]);
-  ask(tag, "200ms");
-  EXPECT_EQ(client.receive().result_int(), 304U);
-  ask(tag, "30s");
-  Client other(server_->port());
-  EXPECT_EQ(other.get("/livez").result_int(), 200U);
-  cell_.set_valid(false);
-  EXPECT_EQ(client.receive().result_int(), 200U);
 }
 
 TEST_F(HttpServerTest, QuickAnswersDoNotWaitForSlowOnes) {

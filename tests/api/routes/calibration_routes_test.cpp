@@ -76,6 +76,7 @@ TEST_F(CalibrationRoutes, BadBodiesAreRefusedBeforeAnythingStarts) {
   refused(R"({"guess": [1, 2]})", "bad_value");
   refused(R"({"guess": "1,2,3"})", "bad_value");
   refused(R"({"guess": [1370, 730, 860, 0, 0, 0, 1]})", "bad_value");
+  refused(R"({"guess": {"T_base_sensor": [1.3, 0.7, 0.8, 0, 0, 0, 1], "unit": "mm"}})", "bad_value");
 }
 
 TEST_F(CalibrationRoutes, QuaternionOfAGuessMayHaveAnyLength) {
