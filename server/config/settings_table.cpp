@@ -120,7 +120,7 @@ void declare_sensors(std::vector<Setting>& table) {
       "Width of the depth image; set on the device.");
   key("height", camera(&CameraModel::height), integer(16, 8192), "px",
       "Height of the depth image; set on the device.");
-  key("fps", &SensorConfig::fps, integer(1, 120), "1/s", "Frame rate set on the device.");
+  key("fps", &SensorConfig::fps, integer(2, 120), "1/s", "Frame rate set on the device.");
   key("fx", camera(&CameraModel::fx), positive_real(), "px",
       "Focal length. What the device reports is not used: drivers report wrong fields of view. Wrong "
       "intrinsics cannot be seen from the views alone: 2.6 % off here moved the pose by 39 mm, at a claimed "

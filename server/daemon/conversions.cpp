@@ -100,7 +100,9 @@ MotionClientSettings motion_client_settings(const Config& config) {
   settings.motion.path.joint_rad = config.motion.path_tolerance_deg * kRadPerDeg;
   settings.motion.hold = config.motion.hold;
   settings.motion.connect_timeout = link.link.connect_timeout;
-  settings.watch.stale_after = link.link.stale_after;
+  // What is patient enough to calibrate is not for a robot on the move.
+  settings.watch.stale_after =
+      std::min<Clock::duration>(link.link.stale_after, MotionWatchSettings().stale_after);
   return settings;
 }
 

@@ -101,10 +101,10 @@ struct Daemon::Parts {
   std::unique_ptr<const RobotModel> model;
   std::unique_ptr<const VirtualCell> virtual_cell;
   std::unique_ptr<MotionLink> motion;  // only where the robot may be moved
+  FleetBell fleet;                     // outlives the cell, which rings it; its link does not
   std::unique_ptr<LiveCell> cell;
   std::unique_ptr<RobotLink> link;
   std::unique_ptr<FeedThread> feed;
-  std::unique_ptr<FleetLink> fleet;  // only where a broker is configured
   api::Router router;
   std::unique_ptr<AuditLog> audit;
   std::shared_ptr<api::Authenticator> authenticator;  // only where tokens are asked for
@@ -167,7 +167,7 @@ struct Daemon::Parts {
     const auto on_calibration = [this](const api::CalibrationReport& calibration) {
       operations->note(calibration);
       log_calibration(calibration);
-      if (fleet) fleet->wake();
+      fleet.ring();
     };
     return {on_calibration, log_pose, log_error, log_motion, log_calibration_start};
   }
@@ -257,7 +257,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, api::Entranc
   if (auto status = parts.open_store(config); !status) return status.error();
   if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
-  if (auto status = FleetLink::make(config, version, *parts.cell, *parts.store, parts.fleet); !status) return status.error();
+  if (auto status = parts.fleet.hang(config, version, *parts.cell, *parts.store); !status)
+    return status.error();
   if (auto status = parts.make_http(config, std::move(entrance)); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();
   parts.watch_service(manager);
@@ -275,7 +276,7 @@ void Daemon::stop() {
   if (parts_->link) parts_->link->stop();
   parts_->http.reset();
   parts_->feed.reset();
-  parts_->fleet.reset();
+  parts_->fleet.take_down();
   parts_->cell.reset();
 }
 
@@ -287,6 +288,7 @@ Result<api::Entrance> Daemon::open(const Config& config) {
 Status Daemon::apply(const Config& config) {
   if (auto status = check_exposure(config.server); !status) return status;
   auto settings = http_settings(config);
+  settings.max_connections = room_for_connections(settings.max_connections);
   settings.door.authenticator = parts_->authenticator;
   return parts_->http->apply(settings);
 }

@@ -36,12 +36,26 @@ Status check_postures(const std::string& route, const MotionRouteConfig& config,
 struct MotionLink::Thread {
   asio::io_context io{1};
   asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(io);
-  std::thread thread{[this] { io.run(); }};
+  std::thread thread;
+
+  /// What asio itself fails at ends the motion, not the thread.
+  void run(MotionClient& client) {
+    for (;;) {
+      try {
+        io.run();
+        return;
+      } catch (const std::exception&) {
+        client.stop(MotionError::short_of_resources);
+      }
+    }
+  }
 };
 
 MotionLink::MotionLink(const MotionClientSettings& settings)
     : thread_(std::make_unique<Thread>()),
-      client_(std::make_shared<MotionClient>(thread_->io.get_executor(), settings)) {}
+      client_(std::make_shared<MotionClient>(thread_->io.get_executor(), settings)) {
+  thread_->thread = std::thread([thread = thread_.get(), client = client_] { thread->run(*client); });
+}
 
 MotionLink::~MotionLink() { stop(); }
 

@@ -144,6 +144,7 @@ Result<CalibrationReport> CalibrationJobs::cancel(const std::string& id) {
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = jobs_.find(id); found != jobs_.end()) job = found->second;
+    if (job && job->is_ending) return fail(ApiError::calibration_not_running, id);  // its end is being stored
     is_computing = job && job->report.status == JobStatus::running;
     if (job) job->cancelled = true;
   }

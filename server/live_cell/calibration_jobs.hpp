@@ -99,6 +99,7 @@ class CalibrationJobs {
   void end_patience(Clock::time_point now);
   std::vector<JobPointer> take_overdue(Clock::time_point now);
   static void begin_computing(Job& job);
+  void compute_safely(const JobPointer& job);
   void compute(const JobPointer& job);
   CalibrationResult calibrate(const JobPointer& job, std::span<const View> views);
   void end(const JobPointer& job, api::JobStatus status, std::string message,

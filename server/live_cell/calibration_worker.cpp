@@ -16,6 +16,8 @@ namespace {
 constexpr auto kLongWait = std::chrono::hours(1);
 constexpr auto kImpatience = std::chrono::milliseconds(50);  // how often is looked whether a posture has come
 
+constexpr const char* kCancelled = "Cancelled on request.";
+
 /// What a quick attempt must know of the pose: the few views of one lie beyond twice their sigma now and
 /// then, and 5 mm are too much to be served as good.
 constexpr double kQuickSigma_m = 0.002, kQuickSigma_rad = 0.002;
@@ -79,7 +81,7 @@ void CalibrationJobs::run() {
     }
     lock.unlock();
     for (const auto& job : overdue) end_overdue(job);
-    if (ready) compute(ready);
+    if (ready) compute_safely(ready);
     lock.lock();
   }
 }
@@ -129,6 +131,15 @@ void CalibrationJobs::end_overdue(const JobPointer& job) {
   end(job, JobStatus::failed, std::move(message));
 }
 
+/// Whatever goes wrong costs this job, not the daemon.
+void CalibrationJobs::compute_safely(const JobPointer& job) {
+  try {
+    compute(job);
+  } catch (const std::exception& failure) {
+    end(job, JobStatus::failed, std::string("The calibration failed unexpectedly: ") + failure.what());
+  }
+}
+
 void CalibrationJobs::compute(const JobPointer& job) {
   const LogScope scope(job->marks());
   const auto views = job->task->take_views();
@@ -146,7 +157,7 @@ void CalibrationJobs::compute(const JobPointer& job) {
     if (is_stopping_) return;  // the store calls it interrupted when it is opened again
   }
   if (job->cancelled) {
-    end(job, JobStatus::cancelled, "Cancelled on request.");
+    end(job, JobStatus::cancelled, kCancelled);
     return;
   }
   if (review_ && is_accepted(result)) {
@@ -197,7 +208,12 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   {
     const std::lock_guard lock(mutex_);
     if (job->is_ending) return;
-    job->is_ending = true;
+    job->is_ending = true;  // who cancels from now on is told that it is too late
+    if (job->cancelled && !is_stopping_ && status == JobStatus::succeeded) {
+      status = JobStatus::cancelled;
+      message = kCancelled;
+      result.reset();
+    }
     report = job->report;
     seen_at = job->seen_at;
     surroundings = job->surroundings;

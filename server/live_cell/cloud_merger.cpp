@@ -54,7 +54,7 @@ api::MergedCloud::Part CloudMerger::add(const LiveSensor& sensor, const Sighting
   return {sensor.id(),
           known.calibration_id,
           T_base_sensor,
-          sighting.stamp,
+          sighting.exposed,
           sighting.view.joint_positions_rad,
           points.size() - before};
 }

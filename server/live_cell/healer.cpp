@@ -101,8 +101,15 @@ void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::ti
 }
 
 void Healer::on_choice(const std::string& sensor_id) {
-  const std::lock_guard lock(mutex_);
-  if (const auto found = patients_.find(sensor_id); found != patients_.end()) found->second.wants_all = false;
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !is_starting_; });
+  const auto found = patients_.find(sensor_id);
+  if (found == patients_.end()) return;
+  Patient& patient = found->second;
+  patient.wants_all = false;
+  patient.candidate.clear();
+  patient.drifted = false;                       // until the sensor says that this one has, too
+  if (patient.under_way) cancel(patient, lock);  // else it would replace what was chosen
 }
 
 bool Healer::decline(const std::string& calibration_id) {

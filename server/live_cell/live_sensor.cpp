@@ -84,7 +84,7 @@ void LiveSensor::take_up(DepthFrame frame) {
   if (const auto verdict = gate_.enter(frame.sequence, frame.stamp, &frame.depth);
       verdict != FrameVerdict::usable)
     return note(verdict);
-  if (is_blind()) lose();  // also where it is the daemon that was stopped
+  if (is_blind(Clock::now())) lose();  // also where it is the daemon that was stopped
   entered_at_ = Clock::now();
   auto& entered = *pending_.emplace_back(std::make_shared<Sighting>());
   entered.view.depth = std::move(frame.depth);
@@ -149,13 +149,21 @@ void LiveSensor::serve_tasks(const Sighting& sighting, bool usable) {
 /// A sensor that was away, if only for a restart of its process, may have been moved. One whose frames are
 /// all the same, or out of order, tells as little as one that sends none.
 void LiveSensor::notice_loss(const SensorHealth& health) {
-  const bool away = health.state != SensorHealth::State::streaming || is_blind();
+  const bool away = health.state != SensorHealth::State::streaming || is_blind(Clock::now());
   if (!away && health.restarts == restarts_) return;
   restarts_ = health.restarts;
   lose();
 }
 
-bool LiveSensor::is_blind() const { return Clock::now() - entered_at_ > kBlindAfter; }
+bool LiveSensor::is_blind(Clock::time_point now) const { return now - entered_at_.load() > kBlindAfter; }
+
+/// Under mutex_. What the pose is worth to somebody who asks: the thread that watches it may itself be held
+/// up, or have been stopped, and has not noticed yet that it has seen nothing for a while.
+PoseWatch LiveSensor::worth_at(Clock::time_point now) const {
+  auto worth = watch_;
+  if (is_blind(now)) worth.on_sensor_lost();
+  return worth;
+}
 
 void LiveSensor::lose() {
   {
@@ -188,7 +196,8 @@ void LiveSensor::note(FrameVerdict verdict) {
 void LiveSensor::tell_of_pose() {
   {
     const std::lock_guard lock(mutex_);
-    const Told now{pose_number_, watch_.state(), known_ && watch_.is_valid(Clock::now())};
+    const auto worth = worth_at(Clock::now());
+    const Told now{pose_number_, worth.state(), known_ && worth.is_valid(Clock::now())};
     if (now == told_) return;
     told_ = now;
   }

@@ -135,7 +135,8 @@ class LiveSensor {
   void check(const Sighting& sighting);
   void note(FrameVerdict verdict);
   void notice_loss(const SensorHealth& health);
-  bool is_blind() const;
+  bool is_blind(Clock::time_point now) const;
+  PoseWatch worth_at(Clock::time_point now) const;
   void lose();
   void watch_offset();
   void tell_of_pose();
@@ -147,6 +148,7 @@ class LiveSensor {
   const std::function<void(const api::PoseReport&)> on_pose_;
   std::atomic<bool> is_stopping_{false};
   Heartbeat heartbeat_;
+  std::atomic<Clock::time_point> entered_at_{};  // when a frame last told something new
 
   const std::unique_ptr<DriftMonitor> monitor_;  // nothing: the pose is checked against the robot alone
 
@@ -158,7 +160,6 @@ class LiveSensor {
   ViewGate gate_;
   std::deque<std::shared_ptr<Sighting>> pending_;  // entered, their joints not all there; oldest first
   std::uint64_t restarts_ = 0;                     // of the source, as far as noticed
-  Clock::time_point entered_at_;                   // when a frame last told something new
 
   mutable std::mutex mutex_;  // guards what follows
   std::unique_ptr<DepthSource> source_;

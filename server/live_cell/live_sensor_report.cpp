@@ -27,14 +27,15 @@ const char* name_of(SensorHealth::State state) {
 api::PoseReport LiveSensor::pose() const {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
+  const auto worth = worth_at(now);
   api::PoseReport report;
   report.sensor_id = settings_.id;
   report.base_frame = robot_.model().base_link();
   report.controller_frame = robot_.controller_frame();
   report.sensor_frame = settings_.id + "_optical";
-  report.state = watch_.state();
-  report.valid = known_ && watch_.is_valid(now);
-  report.reason = watch_.reason(now);
+  report.state = worth.state();
+  report.valid = known_ && worth.is_valid(now);
+  report.reason = worth.reason(now);
   report.known = known_;
   if (known_) report.age = now - calibrated_at_;
   report.last_check = watch_.last_check(now);
@@ -48,7 +49,7 @@ api::DriftReport LiveSensor::drift() const {
   if (monitor_) report = monitor_->report();
   report.sensor_id = settings_.id;
   const std::lock_guard lock(mutex_);
-  report.pose_state = watch_.state();
+  report.pose_state = worth_at(Clock::now()).state();
   return report;
 }
 
@@ -87,8 +88,9 @@ api::SensorReport LiveSensor::report() const {
   for (std::size_t i = 1; i < kFrameVerdicts; ++i)
     if (counts_[i] > 0 && static_cast<FrameVerdict>(i) != FrameVerdict::timed)
       report.views.refused.emplace_back(name_of(static_cast<FrameVerdict>(i)), counts_[i]);
-  report.pose_state = watch_.state();
-  report.pose_valid = known_ && watch_.is_valid(now);
+  const auto worth = worth_at(now);
+  report.pose_state = worth.state();
+  report.pose_valid = known_ && worth.is_valid(now);
   return report;
 }
 

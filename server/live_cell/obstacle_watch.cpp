@@ -30,7 +30,7 @@ api::SensorObstacles ObstacleWatch::look(const LiveSensor& sensor) {
     return seen;
   }
   const View& view = sound->sighting->view;
-  seen.stamp = sound->sighting->stamp;
+  seen.stamp = sound->sighting->exposed;
   seen.joint_positions_rad = view.joint_positions_rad;
   seen.calibration_id = sound->known.calibration_id;
   seen.T_base_sensor = sound->known.result.T_base_sensor;

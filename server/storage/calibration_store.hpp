@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -27,7 +29,7 @@ struct KeyedStart {
 
 /// A calibration that has ended and that no collector has acknowledged yet.
 struct OutboxEntry {
-  std::int64_t number = 0;  ///< rising
+  std::int64_t number = 0;  ///< rising within a generation of the outbox
   api::CalibrationReport calibration;
 };
 
@@ -88,6 +90,9 @@ class CalibrationStore {
   Result<std::optional<KeyedStart>> find_start(const std::string& sensor_id,
                                                const std::string& idempotency_key);
 
+  /// Changes whenever another database takes the place of the one that was used: its numbers begin anew.
+  /// Never waits.
+  std::uint64_t outbox_generation() const { return generation_; }
   /// What ended and was not acknowledged, with numbers above `after`, oldest first, with evidence.
   Result<std::vector<OutboxEntry>> outbox(std::int64_t after, int limit);
   /// These were acknowledged.
@@ -139,6 +144,8 @@ class CalibrationStore {
   bool is_behind_ = false;                                   // some second copy may be
   std::map<std::string, api::CalibrationReport> owed_ends_;  // by id
   std::set<std::string> owed_drifts_;                        // calibration ids
+
+  std::atomic<std::uint64_t> generation_ = 0;  // of database_
 
   mutable std::mutex report_mutex_;
   api::StorageReport report_;  // guarded by report_mutex_

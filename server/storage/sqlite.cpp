@@ -20,6 +20,7 @@ StorageError translated(int code, int system_errno, StorageError why) {
   if (code == SQLITE_CORRUPT) return StorageError::damaged;
   if (code == SQLITE_NOTADB) return StorageError::not_a_store;
   if (code == SQLITE_NOMEM) return StorageError::out_of_memory;
+  if (code == SQLITE_CONSTRAINT) return StorageError::contradiction;
   return why;
 }
 

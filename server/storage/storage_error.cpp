@@ -32,6 +32,8 @@ const char* text(StorageError code) {
              "saved";
     case StorageError::out_of_memory:
       return "the calibration store ran out of memory; give the daemon more";
+    case StorageError::contradiction:
+      return "the calibration store refuses what contradicts the rest of it; please report this with the log";
   }
   return "unknown storage error";
 }

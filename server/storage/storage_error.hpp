@@ -17,6 +17,7 @@ enum class StorageError {
   read_only,
   damaged,
   out_of_memory,
+  contradiction,  ///< a row that the schema refuses: trying again is of no use
 };
 
 const std::error_category& storage_category();

@@ -4,6 +4,7 @@
 // The part of CalibrationStore that opens the database, does without it, and finds it again.
 #include <sys/statvfs.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -24,6 +25,14 @@ constexpr double kRoom_bytes = 8e6;  // a calibration with its background takes 
 bool is_foreign(const Error& error) {
   return error.code == StorageError::in_use || error.code == StorageError::newer_schema ||
          error.code == StorageError::not_a_store;
+}
+
+/// The second copy is of this calibration, if perhaps not as it is now.
+bool is_saved(const std::filesystem::path& folder, const SavedPose& pose) {
+  const auto saved = read_saved_poses(folder);
+  return std::ranges::any_of(saved, [&](const SavedPose& other) {
+    return other.sensor_id == pose.sensor_id && other.calibration_id == pose.calibration_id;
+  });
 }
 
 std::string state_of(const Error& error) {
@@ -71,6 +80,7 @@ Status CalibrationStore::take_up() {
   unusable_.reset();
   failure_.reset();
   database_.emplace(*std::move(opened));
+  ++generation_;
   // Only those of the last daemon: what this one has begun while it had no database goes on.
   const auto ended = has_ended_interrupted_ ? Status(Done{}) : end_interrupted();
   if (!ended) {
@@ -111,6 +121,7 @@ Status CalibrationStore::stand_in(const Error& error) {
   if (auto prepared = prepare_schema(*memory); !prepared) return prepared;
   if (auto filled = recover(*memory, read_saved_poses(saved_pose_folder(file_))); !filled) return filled;
   database_.emplace(*std::move(memory));
+  ++generation_;
   unusable_ = error;
   return Done{};
 }
@@ -129,8 +140,10 @@ Status CalibrationStore::end_interrupted() {
   });
 }
 
-/// Keeps the second copy of a sensor's current calibration in step. None is better than an old one. What was
-/// written to the database stays written, also where there is no memory for this: then look() does it.
+/// Keeps the second copy of a sensor's current calibration in step. None is better than that of another
+/// calibration, and one that lacks the newest of its background or drift better than none: on a full disk it
+/// may be all that the next start can read. What was written to the database stays written, also where there
+/// is no memory for this: then look() does it.
 void CalibrationStore::save_current(const std::string& sensor_id) {
   try {
     const auto folder = saved_pose_folder(file_);
@@ -139,7 +152,7 @@ void CalibrationStore::save_current(const std::string& sensor_id) {
     if (pose && *pose) saved = save_pose(folder, **pose);
     unsaved_.erase(sensor_id);
     if (!saved) {
-      forget_pose(folder, sensor_id);
+      if (pose && *pose && !is_saved(folder, **pose)) forget_pose(folder, sensor_id);
       unsaved_.emplace(sensor_id, saved.error().message());
     }
   } catch (const std::bad_alloc&) {
@@ -195,7 +208,7 @@ void CalibrationStore::pay_owed() {
   while (!failure_ && !owed_ends_.empty()) {
     const auto owed = owed_ends_.begin()->second;
     (void)write_now([&] { return insert_end(owed); });
-    if (!failure_ || failure_->code == StorageError::cannot_write) owed_ends_.erase(owed.id);
+    if (!failure_ || failure_->code == StorageError::contradiction) owed_ends_.erase(owed.id);
   }
   while (!failure_ && !owed_drifts_.empty()) {
     const auto owed = *owed_drifts_.begin();

@@ -27,7 +27,8 @@ Status check_structure(Database& database) {
   const auto words = check.next() ? check.text(0) : std::string();
   if (auto status = check.status(StorageError::cannot_read); !status) return status;
   if (words != "ok") return Error{StorageError::damaged, words};
-  for (const char* table : {"calibrations", "results", "activations", "drifts", "backgrounds", "evidence", "outbox"}) {
+  for (const char* table :
+       {"calibrations", "results", "activations", "drifts", "backgrounds", "evidence", "outbox"}) {
     Statement query(database, std::string("SELECT 1 FROM ") + table + " LIMIT 1");
     query.next();
     if (auto status = query.status(StorageError::damaged); !status) return status;
@@ -99,13 +100,15 @@ bool is_damaged_store(const fs::path& file, const Error& error) {
   if (error.code != StorageError::not_a_store) return false;
   std::string begin(kMagic.size(), '\0');
   std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return begin == kMagic || fs::exists(saved_pose_folder(file));
+  std::error_code unreadable;
+  return begin == kMagic || fs::exists(saved_pose_folder(file), unreadable);
 }
 
 Result<fs::path> put_aside(const fs::path& file) {
   auto aside =
       file.parent_path() / (damaged_prefix(file) + utc_text(std::chrono::system_clock::now(), kUtcCompact));
-  while (fs::exists(aside)) aside += "+";
+  std::error_code unreadable;
+  while (fs::exists(aside, unreadable)) aside += "+";
   for (const char* ending : {"", "-wal", "-shm"}) {
     auto from = file, to = aside;
     from += ending;

@@ -139,7 +139,7 @@ class Stopped(ClockTest):
     """The daemon alone is stopped; robot, sensor and clients go on."""
 
     def test_the_first_answer_after_a_stop_owns_up_to_it_and_all_is_well_within_a_second(self):
-        daemon = self.calibrated("pose.max_unverified=5s")
+        daemon = self.calibrated()
         self.ask.connection.connect()
         stop(daemon)
         self.ask.connection.request("GET", POSE)  # it waits with the kernel
@@ -190,7 +190,7 @@ class Stopped(ClockTest):
         return wrong_s
 
     def test_what_is_asked_after_a_stop_tells_ages_that_hold_the_stop(self):
-        daemon = self.calibrated()  # max_unverified of a minute: the pose may stay valid, and says how old it is
+        daemon = self.calibrated()
         before = self.ages()
         stop(daemon)
         time.sleep(STOPPED_S)

@@ -19,12 +19,18 @@ OF_THE_SIMULATOR = SOURCE / "docs/simulator.md"
 FIRST, SECOND = "20261122T014643-192c11", "20261122T020110-77ab03"  # the calibrations of the examples
 ELSEWHERE = (
     (r"(sudo )?scripts/\S+", "minutes to hours each; that there is such a script is looked at here"),
-    (r"docker |docker compose ", "takes an engine; scripts/test_image.sh builds and runs the same image"),
-    (r"sudo(edit)? |journalctl ", "changes the machine; scripts/test_package.sh does it in a root of its own"),
+    (r"docker build ", "takes an engine; scripts/test_image.sh builds each of these targets with buildah"),
+    (r"docker compose ", "takes an engine; nothing here runs it: ctest -R manifests holds the files against their schema"),
+    (r"sudo apt install \./calibrd_", "changes the machine; scripts/test_package.sh does it in a root of its own"),
+    (r"sudo -u calibrd calibrd", "takes that user; scripts/test_package.sh runs it in a root of its own, as that user"),
+    (r"sudo systemctl enable ", "changes the machine; scripts/test_package.sh enables the unit in a folder; nothing here starts it by systemd"),
+    (r"sudo mkdir /etc/calibrd/robot|sudoedit /etc/calibrd/", "changes the machine; nothing here runs it"),
+    (r"journalctl ", "takes the unit running under systemd; operations_test.py reads the same lines from stderr"),
     (r"calibrd healthcheck", "healthcheck_test.py"),
-    (r"calibrd-collector ", "tests/fleet"),
+    (r"calibrd-collector ", "takes these servers; fleet_test.py runs it with TLS to the broker, and a database without TLS or password"),
     (r"xacro ", "is not ours"),
-    (r"git clone https://github.com/OpenKinect|cmake .*OPENNI2_DRIVER|.*/opt/(freenect2|kinect2)", "is not ours; needs the network"),
+    (r"git clone https://github.com/OpenKinect|cmake .*OPENNI2_DRIVER|.*/opt/(freenect2|kinect2)|sudo (apt install build-e|cmake --ins)",
+     "is not ours; needs the network, and changes the machine; nothing here runs it"),
     (r"build/release/bin/calibrd-sim run ", "every test of tests/e2e starts it"),
     (r"curl .*http://cell7:", "security_test.py"),
     (r"curl .*/robot/motions|jq .*next_posture_of", "motion_test.py"),
@@ -79,8 +85,9 @@ class Documents(CellTest):
         """A folder that looks like the repository's root after a build."""
         root = self.folder / document.stem
         (root / "build").mkdir(parents=True)
-        for name, target in (("config", SOURCE / "config"), ("scripts", SOURCE / "scripts"), ("build/release", BUILD)):
-            (root / name).symlink_to(target)
+        for name in ("config", "deploy", "scripts"):
+            (root / name).symlink_to(SOURCE / name)
+        (root / "build/release").symlink_to(BUILD)
         (root / ".curlrc").write_text(f'silent\nshow-error\nmax-time = {LONGEST_S}\nwrite-out = "%{{stderr}}status %{{http_code}}\\n"\n')
         if document.stem == "security":  # where the daemon of that cell would have them
             shutil.copy(SOURCE / "config/demo.toml", root / "my_cell.toml")
@@ -171,6 +178,17 @@ class Documents(CellTest):
     def test_every_command_that_changes_the_simulated_cell_works(self):
         self.start_simulator()
         self.check(OF_THE_SIMULATOR)
+
+    def test_the_client_in_python_says_so_while_there_is_no_pose(self):
+        self.daemon = self.serve(self.simulate()).wait_alive()
+        self.real = {"127.0.0.1:8080": f"127.0.0.1:{self.daemon.port}"}
+        document = SOURCE / "docs/polling.md"
+        root = self.place(document)
+        clients = [block for block in blocks_of(document) if block.language == "python"]
+        self.assertEqual(len(clients), 1)
+        done = self.run_in(root, [sys.executable, "-"], self.put_real(clients[0].text))
+        self.assertEqual((done.returncode, done.stdout.count("not valid: ")), (0, 3), done.stdout + done.stderr)
+        self.assertNotIn("no answer", done.stdout)
 
     def test_no_command_hides_from_this_test(self):
         hidden = re.compile(r"^    +(?:calibrd|scripts/|curl|cmake|ctest|sudo|docker|git|build/)\S* .*$", re.MULTILINE)

@@ -94,7 +94,7 @@ class CellFixture : public ::testing::Test {
                                        CellLog{[this](const auto& report) { on_log_(report); },
                                                {},
                                                [this](const auto& error) { on_error_(error); }});
-    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, Clock::duration(0), guess_, {}, mirror_}));
+    ASSERT_TRUE(cell_->add_sensor({"eye", camera_, sensor_latency_, guess_, {}, mirror_}));
     feed_ = std::make_shared<FedSource::Feed>();
     cell_->start("eye", std::make_unique<FedSource>(feed_));
     events_ = cell_->robot_link().events();
@@ -112,6 +112,7 @@ class CellFixture : public ::testing::Test {
     estimator.make_check = [this](const CameraModel&) -> CheckFunction {
       return [this](const View&, const Pose&, const DepthCorrection&, const Matrix6d&) {
         ++checks_;
+        while (holds_checks_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         return PoseCheck{checks_have_evidence_.load(), agrees_.load(), 0.9, 0, 4000};
       };
     };
@@ -229,6 +230,7 @@ class CellFixture : public ::testing::Test {
 
   std::filesystem::path folder_;
   CameraModel camera_{32, 24, 30, 30, 15.5, 11.5, {0, 0, 0, 0, 0}};
+  Clock::duration sensor_latency_{0};
   std::optional<Pose> guess_ = Pose::Identity();
   bool mirror_ = false, watches_ = false;
   std::uint16_t wall_mm_ = 1500;
@@ -250,6 +252,7 @@ class CellFixture : public ::testing::Test {
   std::uint64_t joints_sent_ = 0, frames_sent_ = 0;
   std::atomic<int> checks_{0};
   std::atomic<bool> agrees_{true}, checks_have_evidence_{true};
+  std::atomic<bool> holds_checks_{false};  // the thread that watches the sensor with them
   std::function<void(const api::CalibrationReport&)> on_log_ = [](const auto&) {};
   std::function<void(const std::string&)> on_error_ = [](const auto&) {};
   std::function<CalibrationResult(std::span<const View>, const CalibrationSettings&)> on_calibrate_ =

@@ -162,6 +162,19 @@ TEST_F(Healing, PoseThatSomebodyHasChosenIsNotMadeBetterUnasked) {
   }
 }
 
+TEST_F(Healing, PoseThatSomebodyHasChosenIsNotReplacedByWhatIsUnderWay) {
+  begin(HealingMode::automatic, 0ms);
+  set_state(api::PoseState::calibrated);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  healer_->on_choice("eye");
+  EXPECT_EQ(cancelled_, std::vector<std::string>{"c1"});
+  EXPECT_FALSE(wait_for(2, 300ms));
+  set_state(api::PoseState::unverified, "c7");
+  set_state(api::PoseState::drifted, "c7");
+  EXPECT_TRUE(wait_for(2)) << "where the chosen one has drifted, too, it is healed";
+}
+
 TEST_F(Healing, SaysWhenItTriesAgain) {
   begin(HealingMode::automatic);
   EXPECT_FALSE(healer_->next_attempt("eye"));
@@ -179,6 +192,16 @@ TEST_F(Healing, AskedForTheResultWaitsAsACandidate) {
   EXPECT_EQ(healer_->candidate("eye"), "c1");
   EXPECT_FALSE(wait_for(2, 200ms));
   set_state(api::PoseState::calibrated);
+  EXPECT_EQ(healer_->candidate("eye"), "");
+}
+
+TEST_F(Healing, ACandidateWaitsNoLongerOnceSomebodyHasChosen) {
+  begin(HealingMode::ask);
+  set_state(api::PoseState::drifted);
+  ASSERT_TRUE(wait_for(1));
+  end("c1", api::JobStatus::succeeded, false);
+  ASSERT_EQ(healer_->candidate("eye"), "c1");
+  healer_->on_choice("eye");
   EXPECT_EQ(healer_->candidate("eye"), "");
 }
 

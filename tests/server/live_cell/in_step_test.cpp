@@ -124,6 +124,25 @@ TEST_F(InStep, CloudsCarryTheMomentTheirJointsAreOf) {
   });
 }
 
+TEST_F(InStep, AFrameThatCameLateIsOfTheMomentItWasExposed) {
+  sensor_latency_ = 30ms;
+  start();
+  calibrate();
+  watch_until([&] { return pose().valid; });
+  std::this_thread::sleep_for(200ms);
+  stand(0.9);
+  const auto stamp = Clock::now() - 20ms;
+  show_frame(100'000, 1777, stamp);
+  wait_for([&] {
+    const auto cloud = cell_->cloud({"eye", api::CloudKind::residual, false});
+    return cloud && cloud->frame_stamp_ns == (stamp - 30ms).time_since_epoch() / 1ns;
+  });
+  const auto merged = cell_->merged_cloud({});
+  ASSERT_TRUE(merged);
+  ASSERT_EQ(merged->parts.size(), 1U);
+  EXPECT_EQ(merged->parts[0].stamp, stamp - 30ms);
+}
+
 /// A sensor that looks at the test arm, whose frames and joints are handed over with known lateness.
 class OffsetWatchTest : public ::testing::Test {
  protected:

@@ -126,6 +126,20 @@ TEST_F(Cell, CalibrationCanBeCancelledWhileItComputes) {
   EXPECT_FALSE(pose().known);
 }
 
+TEST_F(Cell, CancelThatComesWhileTheEndIsBeingStoredIsTooLateAndSaysSo) {
+  std::optional<Error> refused;
+  on_log_ = [&](const api::CalibrationReport& report) {  // between the store and the end of the job
+    if (!report.finished) return;
+    const auto answer = cell_->cancel_calibration(report.id);
+    if (!answer) refused = answer.error();
+  };
+  calibrate();
+  wait_for([&] { return !cell_->cancel_calibration("none").has_value(); });
+  on_log_ = [](const auto&) {};
+  ASSERT_TRUE(refused) << "it is told that it was in time, and the pose is served all the same";
+  EXPECT_EQ(refused->code, ApiError::calibration_not_running);
+}
+
 TEST_F(Cell, CalibrationThatDoesNotSeeItsPosturesFailsAndSaysWhy) {
   settings_.jobs.collect_timeout = 300ms;
   start();

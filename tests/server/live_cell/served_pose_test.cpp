@@ -23,6 +23,20 @@ TEST_F(ServedPose, StoredPoseIsUnverifiedAfterARestartUntilACheckAgrees) {
   EXPECT_EQ(pose().state, PoseState::calibrated);
 }
 
+TEST_F(ServedPose, IsNotGoodWhileWhatWatchesItIsHeldUp) {
+  calibrate();
+  watch_until([&] { return pose().valid; });
+  holds_checks_ = true;
+  const int checks = checks_;
+  watch_until([&] { return checks_ > checks || !pose().valid; });
+  wait_for([&] { return !pose().valid; });
+  EXPECT_EQ(pose().state, PoseState::unverified);
+  EXPECT_NE(pose().reason, "");
+  EXPECT_FALSE(cell_->sensors().at(0).pose_valid);
+  holds_checks_ = false;
+  watch_until([&] { return pose().valid; });
+}
+
 TEST_F(ServedPose, PoseAndRobotNameTheControllerFrame) {
   EXPECT_FALSE(pose().controller_frame);
   EXPECT_EQ(cell_->robot().controller_frame, "");

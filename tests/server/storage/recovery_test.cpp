@@ -189,6 +189,44 @@ TEST_F(Recovery, WhatCouldNotBeStoredIsKnownAndStoredOnceThereIsRoom) {
   EXPECT_TRUE((*store->current("kinect2"))->drifted);
 }
 
+TEST_F(Recovery, AnEndThatIsOwedIsNotForgottenForADiskThatFailsOnceMore) {
+  TestVfs vfs;
+  auto store = open(TestVfs::kName);
+  for (int n = 1; n <= 12; ++n) {
+    api::CalibrationReport report;
+    report.id = "third" + std::to_string(n);
+    report.sensor_id = "kinect2";
+    ASSERT_TRUE(store->add(report, {}));
+    report.status = api::JobStatus::failed;
+    report.finished = std::chrono::system_clock::now();
+    report.message = "no room";
+    vfs.fail(VfsCall::write, 1, SQLITE_FULL, true);
+    ASSERT_FALSE(store->finish(report));
+    store->owe_end(report);
+    vfs.heal();
+    vfs.fail(VfsCall::write, n, SQLITE_IOERR_WRITE);
+    store->look();
+    vfs.heal();
+    store->look();
+  }
+  store.reset();
+  store = open();
+  for (int n = 1; n <= 12; ++n)
+    EXPECT_EQ((*store->find("third" + std::to_string(n)))->message, "no room") << n;
+}
+
+TEST_F(Recovery, ASecondCopyThatCannotBeRenewedIsKeptUnlessItIsOfAnotherCalibration) {
+  const auto store = open();
+  std::filesystem::create_directories(saved() / "kinect2.json.new/in the way");
+  EXPECT_TRUE(store->add_drift("second"));
+  EXPECT_EQ(store->report().state, "unsaved");
+  ASSERT_EQ(read_saved_poses(saved()).size(), 1U);
+  EXPECT_EQ(read_saved_poses(saved())[0].calibration_id, "second");
+  EXPECT_TRUE(store->activate(**store->find("first"), "fx 365"));
+  EXPECT_EQ(store->report().state, "unsaved");
+  EXPECT_TRUE(read_saved_poses(saved()).empty());
+}
+
 TEST_F(Recovery, ADatabaseFoundDamagedWhileRunningIsReplacedOnlyWhereItIs) {
   TestVfs vfs;
   const auto store = open(TestVfs::kName);
@@ -198,6 +236,7 @@ TEST_F(Recovery, ADatabaseFoundDamagedWhileRunningIsReplacedOnlyWhereItIs) {
       overwrite(4096, 3 * 4096, 'x');
     }
     vfs.fail(VfsCall::shm_lock, 1, SQLITE_CORRUPT);
+    const auto generation = store->outbox_generation();
     EXPECT_FALSE(store->history({"kinect2", 10, ""}));
     EXPECT_EQ(store->report().state, "damaged");
     EXPECT_FALSE(store->report().ready);
@@ -205,6 +244,7 @@ TEST_F(Recovery, ADatabaseFoundDamagedWhileRunningIsReplacedOnlyWhereItIs) {
     EXPECT_EQ(store->report().state, is_damaged ? "recovered" : "good");
     EXPECT_EQ(current(*store), "second");
     EXPECT_EQ(store->find("first")->has_value(), !is_damaged);
+    EXPECT_NE(store->outbox_generation(), generation) << "the outbox's numbers may begin anew";
   }
 }
 
