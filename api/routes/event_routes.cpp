@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
 #include "api/routes/responses.hpp"
+#include "api/routes/robot_joints_stream.hpp"
 #include "api/routes/routes.hpp"
 
 namespace calibrd::api {
@@ -40,18 +41,40 @@ class EventStream : public BodyStream {
   std::chrono::steady_clock::time_point written_at_;
 };
 
-Response answer(const Request& request, const EventHub& events) {
-  if (auto unknown = unknown_query(request, {})) return problem(*unknown);
+/// Events and joints in one: a browser grants a host six connections, and every stream holds one of them.
+class EventsAndJointsStream : public BodyStream {
+ public:
+  EventsAndJointsStream(const EventHub& events, const std::string& last_id, const CellService& service)
+      : events_(events, last_id), joints_(service) {}
+
+  std::string next() override { return events_.next() + joints_.next(); }
+  std::chrono::milliseconds pause() const override { return joints_.pause(); }
+
+ private:
+  EventStream events_;
+  RobotJointsStream joints_;
+};
+
+Response answer(const Request& request, const EventHub& events, const CellService& service) {
+  if (auto unknown = unknown_query(request, {"joints"})) return problem(*unknown);
+  const auto joints = request.query.find("joints");
+  if (joints != request.query.end() && joints->second != "true" && joints->second != "false")
+    return problem(ApiError::bad_query,
+                   "joints: \"" + joints->second + "\" is neither \"true\" nor \"false\"");
+  const auto last_id = request.header("last-event-id");
   Response response{200, {{"Content-Type", "text/event-stream"}, {"Cache-Control", "no-store"}}, {}};
-  response.stream = std::make_shared<EventStream>(events, request.header("last-event-id"));
+  if (joints != request.query.end() && joints->second == "true")
+    response.stream = std::make_shared<EventsAndJointsStream>(events, last_id, service);
+  else
+    response.stream = std::make_shared<EventStream>(events, last_id);
   return response;
 }
 
 }  // namespace
 
-void add_event_routes(Router& router, const EventHub& events) {
+void add_event_routes(Router& router, const EventHub& events, const CellService& service) {
   router.add("GET", "/api/v1/events", Scope::read, Cost::quick,
-             [&events](const Request& request, const PathValues&) { return answer(request, events); });
+             [&](const Request& request, const PathValues&) { return answer(request, events, service); });
 }
 
 }  // namespace calibrd::api

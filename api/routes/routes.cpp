@@ -21,7 +21,7 @@ Router make_routes(CellService& service, const EventHub& events, const Operation
   add_several_sensors_routes(router, service);
   add_obstacle_routes(router, service);
   add_frame_routes(router, service);
-  add_event_routes(router, events);
+  add_event_routes(router, events, service);
   add_session_routes(router);
   add_openapi_routes(router);
   add_page_routes(router, std::make_shared<const PageFiles>(std::move(page)));

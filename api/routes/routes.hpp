@@ -32,7 +32,7 @@ void add_health_routes(Router& router, CellService& service, const OperationsSer
 void add_openapi_routes(Router& router);
 void add_operations_routes(Router& router, const OperationsService& operations);
 void add_frame_routes(Router& router, CellService& service);
-void add_event_routes(Router& router, const EventHub& events);
+void add_event_routes(Router& router, const EventHub& events, const CellService& service);
 void add_session_routes(Router& router);
 void add_page_routes(Router& router, std::shared_ptr<const PageFiles> files);
 

@@ -168,7 +168,7 @@ class OpenApi(CellTest):
         self.events()
 
     def events(self):
-        for name, path in (("streamEvents", "/api/v1/events"), ("streamJoints", "/api/v1/robot/joints")):
+        for name, path in (("streamEvents", "/api/v1/events"), ("streamEvents", "/api/v1/events?joints=true"), ("streamJoints", "/api/v1/robot/joints")):
             connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20)
             with contextlib.closing(connection):
                 connection.request("GET", path)

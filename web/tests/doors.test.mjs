@@ -61,6 +61,20 @@ test("a daemon that hangs is shown within 2 s as well", async () => {
   await says("state", "valid");
 });
 
+test("two windows of the same browser live side by side", async () => {
+  const second = await page.context().newPage();
+  const windows = [page, second];
+  await second.goto(`${cell.url}/`);
+  await waitUntil("both are live", async () => (await Promise.all(windows.map((window) => part(window, "state").textContent()))).every((state) => state === "valid"));
+  assert.deepEqual(await Promise.all(windows.map((window) => window.evaluate(() => document.hidden))), [false, false]);
+  const seen = new Set();
+  const end = performance.now() + 15_000;
+  while (performance.now() < end)
+    for (const window of windows) for (const name of ["connection", "state"]) seen.add(await part(window, name).textContent());
+  await second.close();
+  assert.deepEqual([...seen].sort(), ["live", "valid"]);
+});
+
 test("with a token, what it does not allow is not offered", async () => {
   const file = join(cell.folder, "tokens.json");
   const [token, operator] = [Cell.token(file, "screen", "read"), Cell.token(file, "operator", "calibrate")];

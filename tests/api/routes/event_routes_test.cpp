@@ -36,5 +36,21 @@ TEST_F(EventRoutes, WhatCannotBeResumedIsSaidSo) {
             "retry: 1000\n\nevent: reset\ndata: {}\n\nid: run-1\nevent: pose\ndata: {1}\n\n");
 }
 
+TEST_F(EventRoutes, JointsComeWithThemWhereTheyAreAskedFor) {
+  events_.publish("pose/a", "pose", "{1}");
+  const auto both = get("/api/v1/events?joints=true", {{"last-event-id", "run-0"}}).stream;
+  const auto first = both->next();
+  EXPECT_EQ(
+      first.find(
+          "retry: 1000\n\nid: run-1\nevent: pose\ndata: {1}\n\nevent: joints\ndata: {\"positions_rad\""),
+      0U)
+      << first;
+  EXPECT_EQ(both->next(), "");
+  EXPECT_LT(both->pause(), std::chrono::milliseconds(33));
+  EXPECT_EQ(get("/api/v1/events?joints=false").stream->next().find("joints"), std::string::npos);
+  get("/api/v1/events?joints=1");
+  EXPECT_EQ(code(), "bad_query");
+}
+
 }  // namespace
 }  // namespace calibrd::api

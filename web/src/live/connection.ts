@@ -82,7 +82,7 @@ export class Connection {
     const watch = setInterval(() => this.watch(ending), 100);
     const refresh = setInterval(() => void this.refreshInTime(ending.signal), REFRESH_MS);
     try {
-      await Promise.race([this.followEvents(ending.signal), this.followJoints(ending.signal)]);
+      await this.followEvents(ending.signal);
     } finally {
       ending.abort();
       this.state.joints.value = null; // those of another run must not pass for new
@@ -116,24 +116,17 @@ export class Connection {
   }
 
   private followEvents(signal: AbortSignal): Promise<void> {
-    return readEvents(this.client, "/api/v1/events", {
+    return readEvents(this.client, "/api/v1/events?joints=true", {
       lastId: this.lastEventId,
       signal,
-      onSign: () => undefined,
-      onEvent: (event) => this.take(event, signal),
-    });
-  }
-
-  private followJoints(signal: AbortSignal): Promise<void> {
-    return readEvents(this.client, "/api/v1/robot/joints", {
-      signal,
       onSign: () => (this.lastSign = performance.now()),
-      onEvent: (event) => (this.state.joints.value = JSON.parse(event.data) as Joints),
+      onEvent: (event) => this.take(event, signal),
     });
   }
 
   /** An event tells that something has changed, not what to trust: that is asked for. */
   private take(event: ServerEvent, signal: AbortSignal): void {
+    if (event.type === "joints") return void (this.state.joints.value = JSON.parse(event.data) as Joints);
     this.lastEventId = event.id || this.lastEventId;
     if (event.type === "reset") return;
     const about = JSON.parse(event.data) as { sensor?: string; status?: string };
