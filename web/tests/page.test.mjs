@@ -63,6 +63,10 @@ test("a calibration that has begun is shown, and can be cancelled", async () => 
   await confirm();
   await part(page, "job").waitFor({ state: "hidden" });
   assert.equal((await pose()).job, null);
+  await says("notices", /Calibration \S+: cancelled\./, 20_000);
+  await tab("history");
+  await says("reasons", /./, 20_000);
+  await tab("act");
   assert.equal(await text("state"), "not valid · uncalibrated");
 });
 
@@ -244,7 +248,11 @@ test("light and dark, on a screen and on a tablet: all of it is there", async ()
         await page.setViewportSize({ width, height });
         await tab(name);
         await sleep(200);
-        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: nothing hangs over`);
+        const over = await page.evaluate(() => {
+          const parts = [...document.querySelectorAll("html, main, .side, [role=tabpanel]:not([hidden]), .sensor")];
+          return parts.filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => `${part.tagName}.${part.className}: ${part.scrollWidth} of ${part.clientWidth}`);
+        });
+        assert.deepEqual(over, [], `${name} at ${width}: nothing hangs over`);
         await show(`12-${colorScheme}-${width}-${name}`);
       }
   await page.setViewportSize({ width: 1280, height: 720 });
@@ -255,6 +263,23 @@ test("tabs are reached and changed by keyboard", async () => {
   await page.keyboard.press("ArrowRight");
   assert.equal(await page.locator("#tab-history").getAttribute("aria-selected"), "true");
   await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("End");
+  assert.equal(await page.locator("#tab-pose").getAttribute("aria-selected"), "true");
+  await page.keyboard.press("Home");
+  assert.equal(await page.locator("#tab-act").getAttribute("aria-selected"), "true");
+});
+
+test("the 3D view is turned, moved and neared by keyboard", async () => {
+  const view = part(page, "cell");
+  const ground = async () => (await view.screenshot()).toString("base64");
+  await page.locator("#show-measured").uncheck();
+  await view.focus();
+  for (const key of ["ArrowLeft", "Shift+ArrowLeft", "+"]) {
+    const before = await ground();
+    await page.keyboard.press(key);
+    await waitUntil(`${key} has another picture drawn`, async () => (await ground()) !== before);
+  }
+  await page.locator("#show-measured").check();
 });
 
 test("nothing so far is an error, or goes to another host", () => {

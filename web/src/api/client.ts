@@ -92,3 +92,9 @@ export function explain(failure: unknown): string {
   if (failure instanceof ApiProblem) return [failure.message, failure.remedy].filter(Boolean).join(" ");
   return failure instanceof Error ? failure.message : String(failure);
 }
+
+/** Reports what is a mistake of the page, not an answer of the daemon, a broken connection (TypeError) or an end that the page wanted. */
+export function reportFault(failure: unknown): void {
+  const isExpected = failure instanceof ApiProblem || failure instanceof TypeError || failure instanceof DOMException;
+  if (!isExpected) reportError(failure);
+}

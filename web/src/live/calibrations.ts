@@ -3,6 +3,14 @@
 import type { Client } from "../api/client";
 import type { Calibration } from "../api/types";
 
+interface Page {
+  calibrations: Calibration[];
+  next: string | null;
+}
+
+/** So many are asked for at once. */
+const PAGE = 20;
+
 /** Calibrations that have ended never change but for being current: their results are fetched once. */
 export class Calibrations {
   private readonly ended = new Map<string, Calibration>();
@@ -17,12 +25,17 @@ export class Calibrations {
     return found;
   }
 
-  /** Newest first, with their results. */
-  async history(sensor: string, limit: number): Promise<Calibration[]> {
-    const path = `/api/v1/sensors/${encodeURIComponent(sensor)}/calibrations?limit=${limit}`;
-    const page = await this.client.get<{ calibrations: Calibration[] }>(path);
+  /** The newest `count`, newest first, with their results. */
+  async history(sensor: string, count: number): Promise<Calibration[]> {
+    let path: string | null = `/api/v1/sensors/${encodeURIComponent(sensor)}/calibrations?limit=${Math.min(count, PAGE)}`;
+    const summaries: Calibration[] = [];
+    while (path !== null && summaries.length < count) {
+      const page: Page = await this.client.get<Page>(path);
+      summaries.push(...page.calibrations);
+      path = page.next;
+    }
     return Promise.all(
-      page.calibrations.map(async (summary) => {
+      summaries.slice(0, count).map(async (summary) => {
         if (!summary.finished_at) return summary;
         const whole = await this.find(summary.id);
         return { ...summary, result: whole.result ?? null };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-import { ApiProblem, type Client } from "../api/client";
+import { ApiProblem, type Client, reportFault } from "../api/client";
 import { readEvents, type ServerEvent } from "../api/sse";
 import type { Calibration, Cell, Drift, Joints, Pose, Session } from "../api/types";
 import type { CellState, SensorState } from "./state";
@@ -44,6 +44,7 @@ export class Connection {
       try {
         await this.connectOnce();
       } catch (failure) {
+        reportFault(failure);
         if (!(failure instanceof ApiProblem && failure.status === 401)) this.noteLoss();
       }
       const isToken = this.state.connection.value.kind === "token";
@@ -108,8 +109,8 @@ export class Connection {
     try {
       await this.refreshAll(AbortSignal.any([signal, AbortSignal.timeout(REFRESH_SILENCE_MS)]));
       this.lastRefresh = performance.now();
-    } catch {
-      // What it means is for the watch to say.
+    } catch (failure) {
+      reportFault(failure); // what a refusal or silence means is for the watch to say
     } finally {
       this.isRefreshing = false;
     }
@@ -130,7 +131,7 @@ export class Connection {
     this.lastEventId = event.id || this.lastEventId;
     if (event.type === "reset") return;
     const about = JSON.parse(event.data) as { sensor?: string; status?: string };
-    if (about.sensor) void this.refreshSensor(about.sensor, signal).catch(() => undefined);
+    if (about.sensor) void this.refreshSensor(about.sensor, signal).catch(reportFault);
     const hasEnded = event.type === "calibration" && about.status !== "collecting" && about.status !== "running";
     if (hasEnded || event.type === "pose") this.state.historyVersion.value += 1;
   }

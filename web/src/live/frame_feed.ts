@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Client } from "../api/client";
+import { type Client, reportFault } from "../api/client";
 import { type Frame, type NoFrame, readFrames } from "../api/frames";
 import { Signal } from "../ui/signal";
 import type { CellState } from "./state";
@@ -53,8 +53,8 @@ export class FrameFeed {
     while (!signal.aborted) {
       try {
         await readFrames(this.client, { sensor, ...this.settings }, signal, (frame) => this.take(frame));
-      } catch {
-        // Whether the daemon is there is for the connection to say.
+      } catch (failure) {
+        reportFault(failure); // whether the daemon is there is for the connection to say
       }
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
     }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The calibrd authors
 // SPDX-License-Identifier: Apache-2.0
+import { explain } from "../api/client";
 import type { Calibration } from "../api/types";
 import { ask } from "../ui/dialog";
 import { h, setAttribute, setText } from "../ui/dom";
@@ -19,7 +20,7 @@ export function actionsPanel(context: Context): HTMLElement {
     const key = `${context.state.session.value?.scope}`;
     if (key !== offered) buttons.replaceChildren(...offer(context));
     offered = key;
-    for (const button of buttons.querySelectorAll("button")) setAttribute(button, "aria-disabled", String(!context.state.isLive));
+    for (const button of panel.querySelectorAll("button")) setAttribute(button, "aria-disabled", String(!context.state.isLive));
     buttons.querySelector("[data-test=calibrate]")?.toggleAttribute("disabled", !context.state.isLive || !!sensor?.pose.job);
   };
   context.state.sensors.follow(refresh);
@@ -31,7 +32,7 @@ export function actionsPanel(context: Context): HTMLElement {
 
 function offer(context: Context): HTMLElement[] {
   const button = (name: string, title: string, action: (self: HTMLButtonElement) => Promise<void>, kind = ""): HTMLElement => {
-    const self: HTMLButtonElement = h("button", { class: kind, "data-test": name, click: () => context.state.isLive && void perform(context, self, () => action(self)) }, title);
+    const self: HTMLButtonElement = h("button", { class: kind, "data-test": name, click: () => void perform(context, self, () => action(self)) }, title);
     return self;
   };
   if (!context.state.may("calibrate"))
@@ -87,6 +88,19 @@ async function capture(context: Context): Promise<void> {
   context.notices.tell(`Saved ${name}.`);
 }
 
+const STAGES: Partial<Record<Calibration["status"], string>> = { queued: "Waiting for its turn", collecting: "Collecting:", running: "Computing" };
+
+/** Whoever started it, here or elsewhere: how a calibration went that was shown as under way. */
+async function tellEnd({ client, notices }: Context, id: string): Promise<void> {
+  try {
+    const { status, verdict, message, result } = await client.get<Calibration>(`/api/v1/calibrations/${id}`);
+    const reasons = verdict === "accepted" ? [] : [message, ...(result?.reasons ?? []).map(({ text }) => text)];
+    notices.tell([`Calibration ${id}: ${verdict ?? status}.`, ...reasons].filter(Boolean).join(" "));
+  } catch (failure) {
+    notices.tell(`How calibration ${id} ended is not known: ${explain(failure)}`);
+  }
+}
+
 /** The calibration under way: stage, progress, cancel. */
 class JobLine {
   private readonly stage = h("strong", { "data-test": "stage" });
@@ -101,10 +115,12 @@ class JobLine {
   }
 
   show(job: Calibration | null): void {
+    const before = this.job;
     this.job = job;
+    if (before && before.id !== job?.id && before.sensor === this.context.state.chosen.value) void tellEnd(this.context, before.id);
     this.element.hidden = job === null;
     if (!job) return;
-    setText(this.stage, job.status === "collecting" ? "Collecting:" : "Computing");
+    setText(this.stage, STAGES[job.status] ?? "");
     setText(this.message, job.message ?? "");
     this.progress.value = job.progress;
     this.cancel.hidden = !this.context.state.may("calibrate");

@@ -24,6 +24,7 @@ export interface Context {
 
 /** Does what a button is for; while it does, the button cannot be pressed again. */
 export async function perform(context: Context, button: HTMLButtonElement | null, action: () => Promise<void>): Promise<void> {
+  if (!context.state.isLive) return context.notices.tell("The daemon does not answer: nothing can be done until it is back.", true);
   if (button) button.disabled = true;
   try {
     await action();

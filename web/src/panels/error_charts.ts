@@ -29,11 +29,9 @@ export class ErrorCharts {
   });
   readonly element = h("div", { class: "charts" }, this.position.element, this.rotation.element, this.residual.element);
 
-  /** Newest first. */
-  show(history: readonly Calibration[]): void {
+  /** Newest first; `reference` is the pose being served, T_base_sensor. */
+  show(history: readonly Calibration[], reference: Rows | undefined): void {
     const found = history.filter((calibration) => calibration.result?.T_base_sensor).reverse();
-    const served = found.find((calibration) => calibration.current);
-    const reference = served?.result?.T_base_sensor;
     const numbers = found.map((_, index) => index + 1);
     const results = found.map((calibration) => calibration.result as CalibrationResult);
     const shifts = results.map((result) => (reference && result.T_base_sensor ? difference(reference, result.T_base_sensor) : null));

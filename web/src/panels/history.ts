@@ -9,6 +9,7 @@ import { type Context, perform } from "./context";
 import { ErrorCharts } from "./error_charts";
 import { type Heat, type HeatKind, heatOf } from "./heat";
 
+/** So many at first, and so many more each time that older ones are asked for. */
 const SHOWN = 20;
 const REPAINT_MS = 500;
 
@@ -21,6 +22,8 @@ export class HistoryPanel {
   /** Of which button the robot has its colours. */
   private painted = "";
   private repaintedAt = 0;
+  private shown = SHOWN;
+  private readonly older = h("button", { class: "small", hidden: true, "data-test": "older" }, "Older ones");
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
@@ -31,11 +34,16 @@ export class HistoryPanel {
       {},
       h("p", { class: "hint" }, "Tick two to compare them."),
       h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Calibrations" }, h("table", { class: "history" }, head, this.rows)),
+      this.older,
       this.diff,
       this.charts.element,
     );
     const { state } = context;
     state.chosen.follow(() => this.forget());
+    this.older.addEventListener("click", () => {
+      this.shown += SHOWN;
+      void perform(context, this.older, () => this.refresh());
+    });
     context.frames.frame.follow(() => this.repaint());
     for (const signal of [state.historyVersion, state.chosen, state.connection, state.session]) signal.follow(() => void this.refresh());
   }
@@ -49,10 +57,14 @@ export class HistoryPanel {
     if (!state.isLive || !state.chosen.value) return;
     const sensor = state.chosen.value;
     try {
-      const history = await calibrations.history(sensor, SHOWN);
+      const [shown, servedId] = [this.shown, state.chosenSensor?.pose.calibration ?? state.chosenSensor?.pose.last_known?.calibration];
+      const found = await calibrations.history(sensor, shown + 1);
+      const history = found.slice(0, shown);
+      const served = found.find(({ current }) => current) ?? (servedId ? await calibrations.find(servedId) : null); // which may be older than what is shown
       if (sensor !== state.chosen.value) return; // another one is looked at by now
+      this.older.hidden = found.length <= shown;
       this.rows.replaceChildren(...history.map((calibration) => this.row(calibration)));
-      this.charts.show(history);
+      this.charts.show(history, served?.result?.T_base_sensor);
     } catch (failure) {
       if (state.isLive) notices.tell(explain(failure), true);
     }
@@ -64,7 +76,8 @@ export class HistoryPanel {
     this.compared.length = 0;
     this.rows.replaceChildren();
     this.diff.replaceChildren();
-    this.charts.show([]);
+    this.charts.show([], undefined);
+    this.shown = SHOWN;
   }
 
   private row(calibration: Calibration): HTMLElement {
@@ -74,7 +87,7 @@ export class HistoryPanel {
     const why = [calibration.message ?? "", ...(result?.reasons ?? []).map((reason) => reason.text)].filter(Boolean).join(" ");
     return h(
       "tr",
-      { "data-id": id, "data-current": String(calibration.current), title: why },
+      { "data-id": id, "data-current": String(calibration.current) },
       h("td", {}, choose),
       h(
         "td",
@@ -82,6 +95,7 @@ export class HistoryPanel {
         h("div", {}, when(calibration.created_at)),
         h("small", {}, id),
         h("div", { class: `verdict ${calibration.verdict ?? ""}` }, calibration.verdict ?? calibration.status, calibration.current ? h("strong", {}, " · served") : null),
+        calibration.finished_at && calibration.verdict !== "accepted" && why ? h("p", { class: "reasons", "data-test": "reasons" }, why) : null,
         ...this.buttons(calibration),
       ),
       h("td", {}, h("div", {}, mm(result?.sigma_position_m)), h("div", {}, mrad(result?.sigma_rotation_rad))),

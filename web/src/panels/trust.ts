@@ -9,7 +9,8 @@ import { suggestPosture } from "./suggestion";
 
 /** One line of trust for every sensor: may its pose be used, how good is it, why not, what to do. */
 export function trustPanel(context: Context): HTMLElement {
-  const list = h("div", { class: "trust", role: "group", "aria-label": "Sensors" });
+  const told = h("p", { class: "unseen", role: "status" });
+  const list = h("div", { class: "trust", role: "group", "aria-label": "Sensors" }, told);
   const lines = new Map<string, TrustLine>();
   const refresh = (): void => {
     for (const [id, line] of lines)
@@ -26,6 +27,7 @@ export function trustPanel(context: Context): HTMLElement {
       }
       line.show(sensor);
     }
+    setText(told, [...lines.values()].map((line) => line.inAWord).join(", "));
   };
   context.state.sensors.follow(refresh);
   context.state.chosen.follow(refresh);
@@ -45,13 +47,16 @@ class TrustLine {
   private readonly next = h("button", { class: "small", "data-test": "suggest" }, "Where to move the robot");
   private result: CalibrationResult | null = null;
   private resultOf = "";
+  private readonly choose: HTMLButtonElement;
+  /** For who hears the page: said when it changes, and without ages, which always do. */
+  inAWord = "";
   readonly element: HTMLElement;
 
   constructor(
     private readonly context: Context,
     private readonly id: string,
   ) {
-    const choose = h("button", { class: "name", click: () => (context.state.chosen.value = id) }, id);
+    this.choose = h("button", { class: "name", click: () => (context.state.chosen.value = id) }, id);
     this.next.addEventListener("click", () => {
       context.state.chosen.value = id;
       void perform(context, this.next, () => suggestPosture(context));
@@ -59,7 +64,7 @@ class TrustLine {
     this.element = h(
       "article",
       { class: "sensor", "data-sensor": id },
-      h("header", {}, choose, this.badge, this.verdict),
+      h("header", {}, this.choose, this.badge, this.verdict),
       h(
         "dl",
         {},
@@ -87,7 +92,9 @@ class TrustLine {
     setText(this.statistic, drift.watched ? `${drift.statistic.toFixed(1)} / ${drift.threshold.toFixed(0)}` : "–");
     this.bar.style.width = `${Math.min(100, drift.watched ? (100 * drift.statistic) / drift.threshold : 0)}%`;
     this.bar.classList.toggle("over", drift.statistic > drift.threshold);
-    setText(this.why, why(sensor, isOld));
+    setText(this.why, [healthOf(this.context, this.id), why(sensor, isOld)].filter(Boolean).join(" "));
+    setAttribute(this.choose, "aria-pressed", String(this.context.state.chosen.value === this.id));
+    this.inAWord = `${this.id}: ${isOld ? "what is known is old" : pose.valid ? "valid" : `not valid, ${pose.state}`}`;
   }
 
   /** At the points of the workspace where there are any, else of the pose itself. */
@@ -110,6 +117,14 @@ class TrustLine {
       () => (this.resultOf = ""),
     );
   }
+}
+
+/** What is wrong with the sensor itself, or worth knowing of it. */
+function healthOf(context: Context, id: string): string {
+  const sensor = context.state.cell.value?.sensors.find((one) => one.id === id);
+  if (!sensor || context.state.isOld(id)) return "";
+  const health = sensor.health === "streaming" ? "" : `The sensor is ${sensor.health}${sensor.reason ? `: ${sensor.reason}` : ""}.`;
+  return [health, sensor.notice ?? ""].filter(Boolean).join(" ");
 }
 
 /** In the daemon's own words wherever it has some. */

@@ -12,7 +12,7 @@ export type Colouring = "depth" | "residual" | "class";
 
 /** The large picture, in three dimensions or by the sensor's eye, and what is shown in it. */
 export function viewPanel(context: Context): HTMLElement {
-  const canvas = h("canvas", { class: "cell", "aria-label": "The cell in three dimensions", role: "img", tabindex: 0, "data-test": "cell" });
+  const canvas = h("canvas", { class: "cell", "aria-label": "The cell in three dimensions. Arrow keys move it, with shift they turn it, plus and minus go nearer and away.", role: "img", tabindex: 0, "data-test": "cell" });
   const eye = new Eye(context);
   const status = h("p", { class: "frame-status", role: "status", "data-test": "frame-status" });
   const legendPlace = h("div", { class: "legend" });
@@ -22,6 +22,7 @@ export function viewPanel(context: Context): HTMLElement {
   // The stage has its size only once the page is laid out.
   requestAnimationFrame(() => {
     const view = makeView(context, canvas);
+    canvas.addEventListener("webglcontextlost", () => context.notices.tell("The browser has taken the 3D view its memory: it is drawn again when that is given back, or when the page is loaded again.", true));
     controls.append(...viewControls(context, view, eye, stage, legendPlace));
     if (view) controls.append(comparisonControls(context, view));
   });

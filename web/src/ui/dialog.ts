@@ -43,7 +43,7 @@ const MOST_ERRORS = 4;
 
 /** Says what has happened, for people and screen readers. */
 export class Notices {
-  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
+  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite", "data-test": "notices" });
 
   /** What is said already is not said twice; of errors the newest stay until they are dismissed. */
   tell(text: string, isError = false): void {

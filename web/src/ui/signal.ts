@@ -13,7 +13,12 @@ export class Signal<T> {
 
   set value(value: T) {
     this.current = value;
-    for (const listener of this.listeners) listener(value);
+    for (const listener of this.listeners)
+      try {
+        listener(value);
+      } catch (failure) {
+        reportError(failure); // a fault of one panel must not leave the others with what is old
+      }
   }
 
   /** Calls `listener` now and with every value to come. Returns how to stop it. */

@@ -33,9 +33,10 @@ export function tabs(label: string, all: Tab[]): HTMLElement {
   };
   list.addEventListener("keydown", (event) => {
     const at = buttons.indexOf(document.activeElement as HTMLButtonElement);
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (at < 0 || step === undefined) return;
-    const next = (at + step + all.length) % all.length;
+    const target = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: -1 }[event.key];
+    if (at < 0 || target === undefined) return;
+    event.preventDefault(); // Home and End would scroll
+    const next = (target + all.length) % all.length;
     buttons[next]?.focus();
     buttons[next]?.click();
   });

@@ -32,6 +32,9 @@ export class CellScene {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.target.set(0.2, 0, 0.4);
     this.controls.addEventListener("change", () => this.draw());
+    this.controls.listenToKeyEvents(canvas); // arrows move, with shift they turn
+    canvas.addEventListener("keydown", (event) => this.zoomBy(event.key));
+    canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.controls.update();
     this.addSurroundings();
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -79,6 +82,13 @@ export class CellScene {
     this.controls.target.copy(at);
     this.controls.update();
     this.draw();
+  }
+
+  private zoomBy(key: string): void {
+    const factor = { "+": 0.9, "-": 1 / 0.9 }[key];
+    if (factor === undefined) return;
+    const { target } = this.controls;
+    this.look(this.camera.position.clone().sub(target).multiplyScalar(factor).add(target), target.clone(), this.camera.up.clone());
   }
 
   private addSurroundings(): void {
