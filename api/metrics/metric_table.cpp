@@ -66,6 +66,13 @@ constexpr std::array kTable{
     MetricFamily{"calibrd_storage_state", gauge, "state", "1 for the state of the store, 0 for the others."},
     MetricFamily{"calibrd_storage_database_bytes", gauge, "", "Size of the database with its write-ahead log."},
 
+    MetricFamily{"calibrd_mqtt_connected", gauge, "", "1 while connected to the broker; this and what follows of it is absent without mqtt.host."},
+    MetricFamily{"calibrd_mqtt_connects_total", counter, "", "Connections made to the broker."},
+    MetricFamily{"calibrd_mqtt_calibrations_sent_total", counter, "", "Calibrations sent to the broker; one that is sent again counts again."},
+    MetricFamily{"calibrd_mqtt_calibrations_acknowledged_total", counter, "", "Calibrations that a collector has stored."},
+    MetricFamily{"calibrd_mqtt_calibrations_refused_total", counter, "", "Calibrations that a collector cannot store; the log says why."},
+    MetricFamily{"calibrd_mqtt_calibrations_waiting", gauge, "", "Calibrations that no collector has acknowledged yet, as counted in the last five seconds."},
+
     MetricFamily{"process_cpu_seconds_total", counter, "", "Processor time taken, user and system."},
     MetricFamily{"process_resident_memory_bytes", gauge, "", "Resident memory."},
     MetricFamily{"process_virtual_memory_bytes", gauge, "", "Virtual memory."},

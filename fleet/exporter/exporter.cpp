@@ -12,6 +12,7 @@ namespace calibrd::fleet {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(200);
+constexpr auto kCountPeriod = std::chrono::seconds(5);
 constexpr std::size_t kWindow = 32;  // calibrations, some kilobytes each
 constexpr std::size_t kMostHeard = 256;
 constexpr int kMostInFlight = 100;
@@ -28,21 +29,23 @@ MqttSettings broker_of(const ExporterSettings& settings) {
 }  // namespace
 
 Exporter::Exporter(const ExporterSettings& settings, const api::CellService& service, Outbox& outbox,
-                   ExporterLog log)
+                   ExporterLog log, ExporterWatch& watch)
     : settings_(settings),
       topics_(settings.prefix, settings.cell),
       outbox_(outbox),
       log_(std::move(log)),
+      watch_(watch),
       window_(kWindow),
       states_(service, topics_, settings.cell, settings.version) {}
 
 Result<std::unique_ptr<Exporter>> Exporter::start(const ExporterSettings& settings,
                                                   const api::CellService& service, Outbox& outbox,
-                                                  ExporterLog log) {
-  std::unique_ptr<Exporter> exporter(new Exporter(settings, service, outbox, std::move(log)));
+                                                  ExporterLog log, ExporterWatch& watch) {
+  std::unique_ptr<Exporter> exporter(new Exporter(settings, service, outbox, std::move(log), watch));
   auto client = MqttClient::start(broker_of(settings), exporter->events());
   if (!client) return client.error();
   exporter->client_ = *std::move(client);
+  watch.exporters.set(1);
   exporter->thread_ = std::thread([self = exporter.get()] { self->run(); });
   return exporter;
 }
@@ -72,13 +75,18 @@ MqttEvents Exporter::events() {
     const std::lock_guard lock(mutex_);
     is_connected_ = is_new_connection_ = is_woken_ = true;
     in_flight_ = 0;  // what was on its way is lost with the old connection
+    watch_.connected.set(1);
+    watch_.connects.add();
     trouble_.clear();
     change_.notify_all();
   };
   events.on_trouble = [this](const std::string& why) {
     {
       const std::lock_guard lock(mutex_);
-      if (why.starts_with("no connection")) is_connected_ = false;
+      if (why.starts_with("no connection")) {
+        is_connected_ = false;
+        watch_.connected.set(0);
+      }
       if (why == trouble_) return;  // said once, not at every attempt
       trouble_ = why;
     }
@@ -123,6 +131,7 @@ void Exporter::look() {
   }
   if (is_new) greet();
   for (const auto& message : heard) hear(message);
+  count_waiting();
   if (!is_connected) return;
   const auto publish_state = [this](const auto& topic, const auto& payload, auto expiry) {
     return publish(topic, payload, true, expiry);
@@ -156,13 +165,24 @@ void Exporter::note(const Acknowledgement& acknowledgement) {
   if (!acknowledgement.stored.empty()) {
     // Kept in the window where the disk refuses: it is sent again, and removed when that is acknowledged.
     if (auto removed = outbox_.remove(acknowledgement.stored); !removed) return;
-    for (const auto& id : acknowledgement.stored) window_.drop(id);
+    for (const auto& id : acknowledgement.stored)
+      if (window_.drop(id)) watch_.acknowledged.add();
   }
   for (const auto& one : acknowledgement.refused)
-    if (window_.drop(one.calibration_id))
+    if (window_.drop(one.calibration_id)) {
+      watch_.refused.add();
       log_("mqtt: the collector cannot store calibration " + one.calibration_id + " (" + one.reason +
                "); it stays in the outbox and is tried again when the daemon starts",
            false);
+    }
+}
+
+void Exporter::count_waiting() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_count_) return;
+  next_count_ = now + kCountPeriod;
+  const auto waiting = outbox_.size();
+  watch_.waiting.set(waiting ? *waiting : ExporterWatch::kNotCounted);
 }
 
 void Exporter::refill() {
@@ -182,7 +202,7 @@ void Exporter::refill() {
 
 void Exporter::send_due() {
   for (const auto& payload : window_.take_due(std::chrono::steady_clock::now()))
-    publish(topics_.calibrations(), payload, false);
+    if (publish(topics_.calibrations(), payload, false)) watch_.sent.add();
 }
 
 /// What is not taken now is told again: states when they are next looked at, calibrations until they are

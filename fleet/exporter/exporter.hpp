@@ -11,6 +11,7 @@
 
 #include "api/service/cell_service.hpp"
 #include "fleet/exporter/export_window.hpp"
+#include "fleet/exporter/exporter_watch.hpp"
 #include "fleet/exporter/outbox.hpp"
 #include "fleet/exporter/state_publisher.hpp"
 #include "fleet/messages/acknowledgement.hpp"
@@ -29,13 +30,15 @@ struct ExporterSettings {
 /// One line for the log; false: something is wrong.
 using ExporterLog = std::function<void(const std::string& line, bool is_well)>;
 
-/// Tells a broker how the cell is, and every calibration until a collector has acknowledged it. All of it on a thread of
-/// its own, with bounded memory: a broker that is slow or gone costs the cell nothing but rows in the outbox.
+/// Tells a broker how the cell is, and every calibration until a collector has acknowledged it. All of it on
+/// a thread of its own, with bounded memory: a broker that is slow or gone costs the cell nothing but rows in
+/// the outbox.
 class Exporter {
  public:
-  /// `service` and `outbox` must outlive it. Errors: MqttError. A broker that is not there is none.
-  static Result<std::unique_ptr<Exporter>> start(const ExporterSettings& settings, const api::CellService& service,
-                                                 Outbox& outbox, ExporterLog log);
+  /// `service`, `outbox` and `watch` must outlive it. Errors: MqttError. A broker that is not there is none.
+  static Result<std::unique_ptr<Exporter>> start(const ExporterSettings& settings,
+                                                 const api::CellService& service, Outbox& outbox,
+                                                 ExporterLog log, ExporterWatch& watch);
   ~Exporter();
 
   /// There may be something new in the outbox. Safe to call from any thread; never waits.
@@ -46,7 +49,8 @@ class Exporter {
     std::string topic, payload;
   };
 
-  Exporter(const ExporterSettings& settings, const api::CellService& service, Outbox& outbox, ExporterLog log);
+  Exporter(const ExporterSettings& settings, const api::CellService& service, Outbox& outbox, ExporterLog log,
+           ExporterWatch& watch);
   MqttEvents events();
   void run();
   void look();
@@ -55,6 +59,7 @@ class Exporter {
   void note(const Acknowledgement& acknowledgement);
   void refill();
   void send_due();
+  void count_waiting();
   bool publish(const std::string& topic, const std::string& payload, bool retain,
                std::optional<std::chrono::seconds> expiry = {});
   void end();
@@ -63,11 +68,13 @@ class Exporter {
   const CellTopics topics_;
   Outbox& outbox_;
   const ExporterLog log_;
+  ExporterWatch& watch_;
 
   // The thread's own.
   ExportWindow window_;
   StatePublisher states_;
   std::string outbox_trouble_;
+  std::chrono::steady_clock::time_point next_count_{};
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable change_;

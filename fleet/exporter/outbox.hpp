@@ -24,6 +24,8 @@ class Outbox {
   virtual std::uint64_t generation() const = 0;
   /// Rows with a number above `after`, oldest first.
   virtual Result<std::vector<OutboxRow>> waiting(std::int64_t after, int limit) = 0;
+  /// How many wait.
+  virtual Result<std::int64_t> size() = 0;
   virtual Status remove(const std::vector<std::string>& calibration_ids) = 0;
 };
 

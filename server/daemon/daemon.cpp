@@ -257,7 +257,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Config& config, api::Entranc
   if (auto status = parts.open_store(config); !status) return status.error();
   if (auto status = parts.make_cell(config, version, configuration); !status) return status.error();
   if (auto status = parts.make_link(config); !status) return status.error();
-  if (auto status = parts.fleet.hang(config, version, *parts.cell, *parts.store); !status)
+  auto& fleet_watch = parts.operations->fleet_watch();
+  if (auto status = parts.fleet.hang(config, version, *parts.cell, *parts.store, fleet_watch); !status)
     return status.error();
   if (auto status = parts.make_http(config, std::move(entrance)); !status) return status.error();
   if (auto status = parts.start_sources(config); !status) return status.error();

@@ -46,6 +46,8 @@ class FleetLink::StoreOutbox final : public fleet::Outbox {
     return rows;
   }
 
+  Result<std::int64_t> size() override { return store_.outbox_size(); }
+
   Status remove(const std::vector<std::string>& calibration_ids) override {
     return store_.remove_from_outbox(calibration_ids);
   }
@@ -74,13 +76,14 @@ FleetLink::FleetLink() = default;
 FleetLink::~FleetLink() = default;
 
 Status FleetLink::make(const Config& config, const std::string& version, const api::CellService& cell,
-                       CalibrationStore& store, std::unique_ptr<FleetLink>& made) {
+                       CalibrationStore& store, fleet::ExporterWatch& watch,
+                       std::unique_ptr<FleetLink>& made) {
   if (config.mqtt.host.empty()) return Done{};
   if (auto status = check_mqtt(config); !status) return status;
   std::unique_ptr<FleetLink> link(new FleetLink);
   link->outbox_ = std::make_unique<StoreOutbox>(store);
   auto exporter =
-      fleet::Exporter::start(settings_of(config.mqtt, version), cell, *link->outbox_, log_security);
+      fleet::Exporter::start(settings_of(config.mqtt, version), cell, *link->outbox_, log_security, watch);
   if (!exporter) return Error{exporter.error().code, "mqtt: " + exporter.error().detail};
   link->exporter_ = *std::move(exporter);
   made = std::move(link);
@@ -88,9 +91,9 @@ Status FleetLink::make(const Config& config, const std::string& version, const a
 }
 
 Status FleetBell::hang(const Config& config, const std::string& version, const api::CellService& cell,
-                       CalibrationStore& store) {
+                       CalibrationStore& store, fleet::ExporterWatch& watch) {
   std::unique_ptr<FleetLink> made;
-  if (auto status = FleetLink::make(config, version, cell, store, made); !status) return status;
+  if (auto status = FleetLink::make(config, version, cell, store, watch, made); !status) return status;
   const std::lock_guard lock(mutex_);
   link_ = std::move(made);
   return Done{};

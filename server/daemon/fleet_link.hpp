@@ -19,9 +19,9 @@ Status check_mqtt(const Config& config);
 /// The daemon's word to a fleet: exporter and store brought together.
 class FleetLink {
  public:
-  /// Leaves `made` empty where no broker is configured. Cell and store must outlive it.
+  /// Leaves `made` empty where no broker is configured. Cell, store and watch must outlive it.
   static Status make(const Config& config, const std::string& version, const api::CellService& cell,
-                     CalibrationStore& store, std::unique_ptr<FleetLink>& made);
+                     CalibrationStore& store, fleet::ExporterWatch& watch, std::unique_ptr<FleetLink>& made);
   ~FleetLink();
 
   void wake() { exporter_->wake(); }
@@ -39,7 +39,7 @@ class FleetBell {
  public:
   /// See FleetLink::make().
   Status hang(const Config& config, const std::string& version, const api::CellService& cell,
-              CalibrationStore& store);
+              CalibrationStore& store, fleet::ExporterWatch& watch);
   /// As FleetLink::wake(); nothing happens where there is no link.
   void ring();
   /// Ends the link. ring() may still be called.

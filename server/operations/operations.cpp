@@ -48,6 +48,7 @@ std::string Operations::metrics() const {
   calibrations_.write(text);
   text.begin("calibrd_storage_database_bytes");
   text.add({}, static_cast<double>(database_bytes_.value()));
+  write_fleet(text);
   return text.take();
 }
 
@@ -72,6 +73,21 @@ void Operations::write_http(api::MetricsText& text) const {
   one("calibrd_http_unreadable_requests_total", http_watch_.unreadable.value());
   one("calibrd_http_unread_bytes", http_watch_.unread_bytes.value());
   one("calibrd_event_subscribers", events_->listeners());
+}
+
+/// Without a broker there is nothing to tell.
+void Operations::write_fleet(api::MetricsText& text) const {
+  const auto one = [&](const char* family, auto value, bool is_known = true) {
+    text.begin(family);
+    if (is_known && fleet_watch_.exporters.value() > 0) text.add({}, static_cast<double>(value));
+  };
+  const auto waiting = fleet_watch_.waiting.value();
+  one("calibrd_mqtt_connected", fleet_watch_.connected.value());
+  one("calibrd_mqtt_connects_total", fleet_watch_.connects.value());
+  one("calibrd_mqtt_calibrations_sent_total", fleet_watch_.sent.value());
+  one("calibrd_mqtt_calibrations_acknowledged_total", fleet_watch_.acknowledged.value());
+  one("calibrd_mqtt_calibrations_refused_total", fleet_watch_.refused.value());
+  one("calibrd_mqtt_calibrations_waiting", waiting, waiting != fleet::ExporterWatch::kNotCounted);
 }
 
 /// The answers of the interface itself, so that a bundle and a client cannot be told different things.

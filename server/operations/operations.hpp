@@ -12,6 +12,7 @@
 #include "api/metrics/http_metrics.hpp"
 #include "api/service/cell_service.hpp"
 #include "api/service/operations_service.hpp"
+#include "fleet/exporter/exporter_watch.hpp"
 #include "server/operations/pulse.hpp"
 
 namespace calibrd {
@@ -40,6 +41,7 @@ class Operations : public api::OperationsService {
   void look_at_disk();
 
   api::HttpWatch& http_watch() { return http_watch_; }
+  fleet::ExporterWatch& fleet_watch() { return fleet_watch_; }
   /// The threads that must go on; to be filled before begin().
   Pulse& pulse() { return pulse_; }
 
@@ -53,11 +55,13 @@ class Operations : public api::OperationsService {
  private:
   void write_process(api::MetricsText& text) const;
   void write_http(api::MetricsText& text) const;
+  void write_fleet(api::MetricsText& text) const;
   std::string answer_of(const std::string& path, std::map<std::string, std::string> query = {}) const;
 
   const OperationsFacts facts_;
   api::CalibrationMetrics calibrations_;
   api::HttpWatch http_watch_;
+  fleet::ExporterWatch fleet_watch_;
   api::Gauge database_bytes_;
   Pulse pulse_;
   std::unique_ptr<api::HttpMetrics> http_;

@@ -95,6 +95,8 @@ class CalibrationStore {
   std::uint64_t outbox_generation() const { return generation_; }
   /// What ended and was not acknowledged, with numbers above `after`, oldest first, with evidence.
   Result<std::vector<OutboxEntry>> outbox(std::int64_t after, int limit);
+  /// How many that are.
+  Result<std::int64_t> outbox_size();
   /// These were acknowledged.
   Status remove_from_outbox(const std::vector<std::string>& calibration_ids);
 

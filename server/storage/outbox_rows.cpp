@@ -16,7 +16,8 @@ struct Entry {
 };
 
 Result<std::vector<Entry>> select_entries(Database& database, std::int64_t after, int limit) {
-  Statement query(database, "SELECT number, calibration_id FROM outbox WHERE number > ? ORDER BY number LIMIT ?");
+  Statement query(database,
+                  "SELECT number, calibration_id FROM outbox WHERE number > ? ORDER BY number LIMIT ?");
   query.bind(after).bind(limit);
   std::vector<Entry> entries;
   while (query.next()) entries.push_back({query.number(0), query.text(1)});
@@ -41,6 +42,16 @@ Result<std::vector<OutboxEntry>> CalibrationStore::outbox(std::int64_t after, in
       found.push_back({entry.number, **std::move(report)});
     }
     return found;
+  });
+}
+
+Result<std::int64_t> CalibrationStore::outbox_size() {
+  return guarded([&]() -> Result<std::int64_t> {
+    Statement query(*database_, "SELECT COUNT(*) FROM outbox");
+    query.next();
+    const auto count = query.number(0);
+    if (auto status = query.status(StorageError::cannot_read); !status) return status.error();
+    return count;
   });
 }
 

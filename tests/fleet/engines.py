@@ -59,6 +59,32 @@ class Mosquitto(Engine):
         return subprocess.run(words, capture_output=True, text=True, timeout=timeout_s + 10, check=False).stdout.strip()
 
 
+SHIPPED = Path(__file__).resolve().parents[2] / "deploy/kubernetes/aggregation"
+
+
+class ShippedMosquitto(Mosquitto):
+    """With the configuration and the rules of access that deploy/ ships, as they are but for paths and the port. `accounts`:
+    password by user; `more_rules`: of this plant."""
+
+    def __init__(self, folder: Path, port: int, certificate: Path, key: Path, accounts: dict[str, str], more_rules: str = ""):
+        passwords = folder / "passwords"
+        for user, password in accounts.items():
+            create = [] if passwords.exists() else ["-c"]
+            subprocess.run(["mosquitto_passwd", "-b", *create, passwords, user, password], check=True, capture_output=True, timeout=20)
+        rules = folder / "acl"
+        rules.write_text((SHIPPED / "acl").read_text() + "\n" + more_rules)
+        rules.chmod(0o600)
+        text = (SHIPPED / "mosquitto.conf").read_text()
+        for shipped, own in (("listener 8883", f"listener {port} 127.0.0.1"), ("/secrets/tls.crt", str(certificate)), ("/secrets/tls.key", str(key)),
+                             ("/secrets/passwords", str(passwords)), ("/config/acl", str(rules))):
+            if shipped not in text:
+                raise AssertionError(f"mosquitto.conf has no {shipped}")
+            text = text.replace(shipped, own)
+        self.port, self.log, self.config = port, folder / "mosquitto.log", folder / "mosquitto.conf"
+        self.config.write_text(f"user {pwd.getpwuid(os.geteuid()).pw_name}\n" + text)
+        self.start()
+
+
 class Postgres(Engine):
     def __init__(self, folder: Path):
         self.folder, self.log, self.programs = folder / "postgres", folder / "postgres.log", postgres_programs()

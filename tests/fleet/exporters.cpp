@@ -68,6 +68,7 @@ class StoreOutbox final : public fleet::Outbox {
     for (auto& entry : *entries) rows.push_back({entry.number, std::move(entry.calibration)});
     return rows;
   }
+  Result<std::int64_t> size() override { return store_.outbox_size(); }
   Status remove(const std::vector<std::string>& ids) override {
     auto removed = store_.remove_from_outbox(ids);
     if (removed)
@@ -84,6 +85,7 @@ struct Cell {
   std::unique_ptr<CalibrationStore> store;
   std::unique_ptr<api::FakeCell> service = std::make_unique<api::FakeCell>();
   std::unique_ptr<StoreOutbox> outbox;
+  std::unique_ptr<fleet::ExporterWatch> watch = std::make_unique<fleet::ExporterWatch>();
   std::unique_ptr<fleet::Exporter> exporter;
 };
 
@@ -101,8 +103,8 @@ Cell make_cell(const std::filesystem::path& folder, int number, int port, Delays
   settings.broker.port = port;
   settings.cell = name;
   settings.version = "test";
-  auto exporter =
-      fleet::Exporter::start(settings, *cell.service, *cell.outbox, [](const std::string&, bool) {});
+  auto exporter = fleet::Exporter::start(
+      settings, *cell.service, *cell.outbox, [](const std::string&, bool) {}, *cell.watch);
   if (!exporter) throw std::runtime_error(exporter.error().message());
   cell.exporter = *std::move(exporter);
   return cell;

@@ -18,7 +18,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "e2e"))
 from cell import BIN, BUILD, SENSOR, SOURCE, CellTest, free_port, wait_until  # noqa: E402
 from certificates import Authority  # noqa: E402
-from engines import Collector, Mosquitto, Postgres, are_installed  # noqa: E402
+from engines import SHIPPED, Collector, Mosquitto, Postgres, ShippedMosquitto, are_installed  # noqa: E402
+from prometheus import Metrics  # noqa: E402
 
 EXPORTERS = BUILD / "tests/fleet_exporters"
 
@@ -164,16 +165,55 @@ class Fleet(CellTest):
         self.assertEqual(state["health"], "lost")
         self.assertEqual([broker.hear(topic, "-F", "%E") for topic in topics], [""] * 3, "the last words stay")
 
-    def test_a_daemon_tells_pose_state_and_its_own_end_through_tls(self):
-        authority = Authority(self.folder, "root")
+    def check_metrics(self, daemon):
+        def told() -> dict[str, float]:
+            samples = Metrics(daemon.get("/metrics").body.decode()).samples
+            return {name.removeprefix("calibrd_mqtt_"): value for (name, _), value in samples.items() if name.startswith("calibrd_mqtt_")}
+
+        wait_until("nothing waits any more", lambda: told().get("calibrations_waiting") == 0)
+        figures = told()
+        self.assertGreaterEqual(figures.pop("calibrations_sent_total"), 1)
+        self.assertEqual(figures, {"connected": 1, "connects_total": 1, "calibrations_acknowledged_total": 1, "calibrations_refused_total": 0,
+                                   "calibrations_waiting": 0})
+
+    def start_shipped(self, authority: Authority) -> tuple[ShippedMosquitto, Postgres]:
+        """The broker as deploy/ ships it, with a user more, who reads all; a file `password` with the word of all of them."""
         certificate, key = authority.issue("broker")
-        tls = (f"cafile {authority.certificate}", f"certfile {certificate}", f"keyfile {key}")
-        broker, postgres, _ = self.start_three(*tls, collector_options=("--tls", "--ca", authority.certificate, "--broker", "localhost"))
-        with_tls = ("--cafile", str(authority.certificate), "-h", "localhost")
+        password = self.folder / "password"
+        password.write_text("word\n")
+        broker = self.start(ShippedMosquitto(self.folder, free_port(), certificate, key, dict.fromkeys(("cell7", "cell8", "collector", "reader"), "word"),
+                                             "user reader\ntopic read calibrd/v1/cells/#\n"))
+        postgres = self.start(Postgres(self.folder))
+        self.start(Collector(self.folder, BIN / "calibrd-collector", broker, postgres, "--tls", "--ca", authority.certificate, "--broker", "localhost",
+                             "--username", "collector", "--password-file", password))
+        return broker, postgres
+
+    def check_rules_of_access(self, broker: ShippedMosquitto, *with_tls: str):
+        """Nobody speaks for a cell but itself, nor for the collector, nor without a password."""
+        def publish(user: str, word: str, topic: str) -> str:
+            words = ["mosquitto_pub", "-V", "5", "-q", "1", "-p", str(broker.port), "-u", user, "-P", word, *with_tls, "-t", topic, "-m", "{}"]
+            done = subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
+            return done.stdout + done.stderr
+
+        self.assertEqual(publish("cell8", "word", "calibrd/v1/cells/cell8/calibrations"), "")
+        for user, topic in (("cell8", "calibrd/v1/cells/cell7/status"), ("cell8", "calibrd/v1/collector"), ("collector", "calibrd/v1/cells/cell7/status"),
+                            ("reader", "calibrd/v1/cells/cell7/status")):
+            self.assertIn("Not authorized", publish(user, "word", topic), f"{user} may write {topic}")
+        self.assertIn("ot authorized", publish("cell8", "guess", "calibrd/v1/cells/cell8/status"))
+
+    def test_the_documented_rules_of_access_are_those_that_are_shipped(self):
+        shipped = [line for line in (SHIPPED / "acl").read_text().splitlines() if not line.startswith("#")]
+        self.assertIn("\n".join(shipped), (SOURCE / "docs/fleet.md").read_text())
+
+    def test_a_daemon_tells_pose_state_and_its_own_end_through_the_broker_that_is_shipped(self):
+        authority = Authority(self.folder, "root")
+        broker, postgres = self.start_shipped(authority)
+        tls = ("--cafile", str(authority.certificate), "-h", "localhost")
+        with_tls = ("-u", "reader", "-P", "word", *tls)
         simulator = self.simulate()
         simulator.hurry()
         daemon = self.serve(simulator, "mqtt.host=localhost", f"mqtt.port={broker.port}", "mqtt.cell=cell7", "mqtt.tls.enabled=true",
-                            f"mqtt.tls.ca={authority.certificate}").wait_ready()
+                            f"mqtt.tls.ca={authority.certificate}", "mqtt.username=cell7", f"mqtt.password_file={self.folder / 'password'}").wait_ready()
         result = daemon.calibrate(postures=3)
         base = "calibrd/v1/cells/cell7"
         pose = wait_until("a valid pose is told", lambda: (told if (told := json.loads(broker.hear(f"{base}/sensors/{SENSOR}/pose", *with_tls)))["valid"] else None))
@@ -185,6 +225,8 @@ class Fleet(CellTest):
             "SELECT calibration_id, verdict, t_base_sensor FROM newest_poses JOIN calibrations USING (cell, sensor_id, calibration_id)"))
         self.assertEqual(row[0][:2], [result["id"], "accepted"])
         self.assertEqual(json.loads(row[0][2]), result["result"]["T_base_sensor"])
+        self.check_metrics(daemon)
+        self.check_rules_of_access(broker, *tls)
         daemon.process.kill()
         wait_until("the last will", lambda: not json.loads(broker.hear(f"{base}/status", *with_tls))["online"])
 

@@ -27,6 +27,7 @@ struct FleetBellTest : testing::Test {
   Config config;
   api::FakeCell cell;
   std::unique_ptr<CalibrationStore> store;
+  fleet::ExporterWatch watch;
   FleetBell bell;
 };
 
@@ -38,7 +39,7 @@ TEST_F(FleetBellTest, CalibrationsMayEndWhileTheLinkComesAndGoes) {
       while (!is_ending) bell.ring();
     });
   for (int i = 0; i < 20; ++i) {
-    EXPECT_TRUE(bell.hang(config, "1.0", cell, *store));
+    EXPECT_TRUE(bell.hang(config, "1.0", cell, *store, watch));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     bell.take_down();
   }
@@ -48,7 +49,7 @@ TEST_F(FleetBellTest, CalibrationsMayEndWhileTheLinkComesAndGoes) {
 
 TEST_F(FleetBellTest, WithoutABrokerThereIsNothingToRing) {
   config.mqtt.host.clear();
-  EXPECT_TRUE(bell.hang(config, "1.0", cell, *store));
+  EXPECT_TRUE(bell.hang(config, "1.0", cell, *store, watch));
   bell.ring();
   bell.take_down();
 }
