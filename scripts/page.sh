@@ -26,7 +26,7 @@ case ${1:-} in
   test)
     # One after the other: each has a cell of its own, and two of them are more than a small machine does in time.
     status=0
-    for file in page doors; do node --test --test-reporter=spec "web/tests/$file.test.mjs" || status=1; done
+    for file in page doors desk; do node --test --test-reporter=spec "web/tests/$file.test.mjs" || status=1; done
     exit $status
     ;;
   figures) exec node web/tests/figures.mjs "${2:-1}" ;;

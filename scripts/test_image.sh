@@ -170,8 +170,9 @@ case ${1:-} in '') ;; --no-tests) tests=OFF ;; *) echo "test_image.sh: unknown o
 work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-image.XXXXXX")
 trap clean_up EXIT
 trap 'exit 130' INT TERM
-[ "$(id -u)" = 0 ] || die "buildah's chroot isolation takes root: sudo scripts/test_image.sh"
-for tool in buildah curl jq; do command -v $tool >/dev/null || die "no $tool: apt-get install $tool"; done
+[ "$(id -u)" = 0 ] || cannot "buildah's chroot isolation takes root: sudo scripts/test_image.sh"
+for tool in buildah curl jq; do command -v $tool >/dev/null || cannot "no $tool: apt-get install $tool"; done
+[ -n "${CALIBRD_BASE_IMAGE:-}" ] || command -v debootstrap >/dev/null || cannot "no debootstrap: apt-get install debootstrap"
 base=${CALIBRD_BASE_IMAGE:-localhost/calibrd-base}
 [ -n "${CALIBRD_BASE_IMAGE:-}" ] || make_base_image "$base"
 build daemon localhost/calibrd

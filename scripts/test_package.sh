@@ -231,8 +231,9 @@ if [ "${1:-}" = --build-only ]; then
   echo "$deb"
   exit
 fi
-[ "$(id -u)" = 0 ] || die "a root of its own takes root: sudo scripts/test_package.sh"
-for tool in debootstrap curl jq; do command -v $tool >/dev/null || die "no $tool: apt-get install $tool"; done
+[ "$(id -u)" = 0 ] || cannot "a root of its own takes root: sudo scripts/test_package.sh"
+for tool in debootstrap curl jq; do command -v $tool >/dev/null || cannot "no $tool: apt-get install $tool"; done
+unshare --mount true 2>/dev/null || cannot "this machine lets nobody mount anything: run it on one of its own, or in a container that may"
 work=$(mktemp -d "${TMPDIR:-/tmp}/calibrd-package.XXXXXX")
 root=$work/root
 trap clean_up EXIT

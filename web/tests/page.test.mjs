@@ -240,6 +240,20 @@ test("rolled back to a pose that the sensor no longer has, the page does not cal
   assert.equal(await part(page, "candidate").isHidden(), true, "what healing of the other pose has found is not offered");
 });
 
+test("the focus stays where it is while the history is drawn anew", async () => {
+  await tab("history");
+  const row = page.locator(`tr[data-id="${first.calibration}"]`);
+  const focused = () => page.evaluate(() => [document.activeElement?.dataset.test, document.activeElement?.closest("[data-id]")?.dataset.id]);
+  for (const name of ["compare-row", "rollback"]) {
+    await row.locator(`[data-test=${name}]`).focus();
+    const drawn = await row.elementHandle();
+    const { id } = await waitUntil("a calibration begins", () => cell.send("POST", `/api/v1/sensors/${SENSOR}/calibrations`));
+    await cell.send("DELETE", `/api/v1/calibrations/${id}`);
+    await waitUntil("the row is another element", () => drawn.evaluate((old) => !old.isConnected));
+    assert.deepEqual(await focused(), [name, first.calibration]);
+  }
+});
+
 test("light and dark, on a screen and on a tablet: all of it is there", async () => {
   for (const colorScheme of ["light", "dark"])
     for (const [width, height] of [[1280, 720], [820, 1180]])

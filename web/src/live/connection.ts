@@ -20,6 +20,8 @@ export class Connection {
   private lastWatch = 0;
   private lastRefresh = 0;
   private isRefreshing = false;
+  /** Of the connection there is. */
+  private ending: AbortController | null = null;
   private wakeUp: () => void = () => undefined;
   private readonly refreshing = new Map<string, Promise<void>>();
 
@@ -36,6 +38,7 @@ export class Connection {
   private wantToken(isUnknown: boolean): void {
     this.state.session.value = null;
     this.state.connection.value = { kind: "token", reason: isUnknown ? "The daemon does not know this token." : "" };
+    this.ending?.abort(); // what was opened with the token that is gone
   }
 
   /** Never returns. */
@@ -54,6 +57,7 @@ export class Connection {
 
   /** A token has been entered: try again. */
   retry(): void {
+    this.state.connection.value = { kind: "connecting" }; // also for a connection that is about to end
     this.wakeUp();
   }
 
@@ -73,7 +77,7 @@ export class Connection {
   /** Returns, or throws, when the connection has ended. A tab that nobody sees holds none. */
   private async connectOnce(): Promise<void> {
     if (document.hidden) return;
-    const ending = new AbortController();
+    const ending = (this.ending = new AbortController());
     const session = await this.client.get<Session>("/api/v1/session", AbortSignal.timeout(SILENCE_MS));
     if (session.scope === "open") return this.wantToken(this.client.token !== "");
     this.state.session.value = session;

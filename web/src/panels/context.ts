@@ -25,6 +25,7 @@ export interface Context {
 /** Does what a button is for; while it does, the button cannot be pressed again. */
 export async function perform(context: Context, button: HTMLButtonElement | null, action: () => Promise<void>): Promise<void> {
   if (!context.state.isLive) return context.notices.tell("The daemon does not answer: nothing can be done until it is back.", true);
+  const hadFocus = button !== null && document.activeElement === button;
   if (button) button.disabled = true;
   try {
     await action();
@@ -32,6 +33,7 @@ export async function perform(context: Context, button: HTMLButtonElement | null
     context.notices.tell(explain(failure), true);
   } finally {
     if (button) button.disabled = false;
+    if (hadFocus && document.activeElement === document.body) button.focus(); // which a disabled one cannot keep
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { explain } from "../api/client";
 import type { Calibration, CalibrationDiff } from "../api/types";
-import { h } from "../ui/dom";
+import { h, keepingFocus } from "../ui/dom";
 import { mm, mrad, percent, when } from "../ui/format";
 import { activate } from "./actions";
 import { type Context, perform } from "./context";
@@ -63,7 +63,7 @@ export class HistoryPanel {
       const served = found.find(({ current }) => current) ?? (servedId ? await calibrations.find(servedId) : null); // which may be older than what is shown
       if (sensor !== state.chosen.value) return; // another one is looked at by now
       this.older.hidden = found.length <= shown;
-      this.rows.replaceChildren(...history.map((calibration) => this.row(calibration)));
+      keepingFocus(this.rows, () => this.rows.replaceChildren(...history.map((calibration) => this.row(calibration))));
       this.charts.show(history, served?.result?.T_base_sensor);
     } catch (failure) {
       if (state.isLive) notices.tell(explain(failure), true);
@@ -82,7 +82,7 @@ export class HistoryPanel {
 
   private row(calibration: Calibration): HTMLElement {
     const { id, result } = calibration;
-    const choose = h("input", { type: "checkbox", "aria-label": `Compare ${id}`, checked: this.compared.includes(id), disabled: !result?.T_base_sensor });
+    const choose = h("input", { type: "checkbox", "data-test": "compare-row", "aria-label": `Compare ${id}`, checked: this.compared.includes(id), disabled: !result?.T_base_sensor });
     choose.addEventListener("change", () => void this.choose(id, choose));
     const why = [calibration.message ?? "", ...(result?.reasons ?? []).map((reason) => reason.text)].filter(Boolean).join(" ");
     return h(

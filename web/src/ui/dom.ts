@@ -42,6 +42,17 @@ export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** Has `replace` draw rows (`data-id`) of `place` anew, and leaves the focus where it was: in the same row, on what has the same `data-test`. */
+export function keepingFocus(place: Element, replace: () => void): void {
+  const had = document.activeElement instanceof HTMLElement && place.contains(document.activeElement) ? document.activeElement : null;
+  const { id } = had?.closest<HTMLElement>("[data-id]")?.dataset ?? {};
+  replace();
+  if (!had || id === undefined) return;
+  const row = [...place.querySelectorAll<HTMLElement>("[data-id]")].find((one) => one.dataset["id"] === id);
+  const same = [...(row?.querySelectorAll<HTMLElement>(had.tagName) ?? [])].find((one) => one.dataset["test"] === had.dataset["test"]);
+  same?.focus({ preventScroll: true });
+}
+
 export function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts the simulated cell and the daemon, in a folder of their own, and ends them.
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdtempSync, openSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, openSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -56,13 +56,31 @@ class Program {
   }
 }
 
+const DEMO = JSON.parse(readFileSync(join(SOURCE, "config/demo_cell/world.json"), "utf8"));
+
+/** What the configuration says of the sensor that the simulator shows as its `at`-th. */
+function ofSensor(name, at) {
+  const { camera } = DEMO.sensors[0];
+  const lens = ["fx", "fy", "cx", "cy", "distortion"].map((key) => `${key}=${JSON.stringify(camera[key])}`);
+  return [`uri="calibrd-sim://${at}"`, `driver_directory=${join(BUILD, "lib/calibrd-sim-openni")}`, "latency=20ms", ...lens].map((setting) => `sensors.${name}.${setting}`);
+}
+
 export class Cell {
   folder = mkdtempSync(join(tmpdir(), "calibrd-page-"));
   daemon = null;
 
+  constructor(sensors) {
+    this.sensors = sensors;
+  }
+
   /** `settings`: section.key=value. */
-  static async start(...settings) {
-    const cell = new Cell();
+  static start(...settings) {
+    return Cell.startWith([SENSOR], ...settings);
+  }
+
+  /** The same with several sensors of these names, where the demo has its one. */
+  static async startWith(sensors, ...settings) {
+    const cell = new Cell(sensors);
     try {
       await cell.begin(settings);
     } catch (failure) {
@@ -76,7 +94,9 @@ export class Cell {
   async begin(settings) {
     const ready = join(this.folder, "simulator.ready");
     this.world = join(this.folder, "world");
-    this.simulator = new Program(this.folder, "calibrd-sim", ["run", "--world", join(SOURCE, "config/demo_cell/world.json"), "--urdf", URDF, "--models", ROBOTS, "--world-file", this.world, "--controller-port", "0", "--control-port", "0", "--ready-file", ready]);
+    const described = join(this.folder, "world.json");
+    writeFileSync(described, JSON.stringify({ ...DEMO, sensors: this.sensors.map((id) => ({ ...DEMO.sensors[0], id })) }));
+    this.simulator = new Program(this.folder, "calibrd-sim", ["run", "--world", described, "--urdf", URDF, "--models", ROBOTS, "--world-file", this.world, "--controller-port", "0", "--control-port", "0", "--ready-file", ready]);
     await waitUntil("the simulator is ready", () => existsSync(ready));
     const ports = Object.fromEntries(readFileSync(ready, "utf8").trim().split(" ").slice(1).map((word) => word.split("=")));
     this.controllerPort = ports.controller.split(":")[1];
@@ -93,7 +113,7 @@ export class Cell {
 
   /** Starts the daemon, again if need be: at the same address, with the same storage. */
   async serve() {
-    const settings = [`server.port=${this.port}`, `robot.port=${this.controllerPort}`, `storage.path=${join(this.folder, "calibrd.db")}`, `robot.urdf=${URDF}`, `sensors.${SENSOR}.driver_directory=${join(BUILD, "lib/calibrd-sim-openni")}`, ...this.settings];
+    const settings = [`server.port=${this.port}`, `robot.port=${this.controllerPort}`, `storage.path=${join(this.folder, "calibrd.db")}`, `robot.urdf=${URDF}`, ...this.sensors.flatMap(ofSensor), ...this.settings];
     this.daemon = new Program(this.folder, "calibrd", ["serve", "--config", join(SOURCE, "config/demo.toml"), ...settings.flatMap((setting) => ["--set", setting])], { CALIBRD_SIM_WORLD: this.world });
     await waitUntil("robot and sensor are up", async () => (await fetch(`${this.url}/readyz`)).ok, 120_000);
   }
@@ -134,6 +154,10 @@ export class Cell {
   /** A token of that scope, in the file that the setting server.tokens_file names. */
   static token(file, name, scope) {
     return execFileSync(join(BUILD, "bin/calibrd"), ["token", "create", name, "--scope", scope, "--tokens-file", file], { encoding: "utf8" }).trim();
+  }
+
+  static revoke(file, name) {
+    execFileSync(join(BUILD, "bin/calibrd"), ["token", "revoke", name, "--tokens-file", file]);
   }
 
   async end() {
