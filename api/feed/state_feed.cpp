@@ -73,16 +73,15 @@ void StateFeed::look() {
       hub_.publish("pose/" + sensor.id, "pose", json_line(pose_json(*pose)));
     if (const auto drift = service_.drift(sensor.id))
       hub_.publish("drift/" + sensor.id, "drift", json_line(drift_json(*drift)));
-    look_at_calibration(sensor.id, sensor.job);
+    look_at_calibrations(sensor);
   }
 }
 
-/// Of a job that is under way no more the end is told, too.
-void StateFeed::look_at_calibration(const std::string& sensor_id, const std::string& job) {
-  std::string& last = jobs_[sensor_id];
-  if (!last.empty() && last != job) tell(sensor_id, last);
-  if (!job.empty()) tell(sensor_id, job);
-  last = job;
+/// An end is told also of one that came and went since the last look.
+void StateFeed::look_at_calibrations(const SensorReport& sensor) {
+  std::string& told = ended_[sensor.id];
+  if (told != sensor.ended_job) tell(sensor.id, told = sensor.ended_job);
+  if (!sensor.job.empty()) tell(sensor.id, sensor.job);
 }
 
 void StateFeed::tell(const std::string& sensor_id, const std::string& calibration_id) {

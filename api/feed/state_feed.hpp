@@ -20,12 +20,12 @@ class StateFeed {
   void look();
 
  private:
-  void look_at_calibration(const std::string& sensor_id, const std::string& job);
+  void look_at_calibrations(const SensorReport& sensor);
   void tell(const std::string& sensor_id, const std::string& calibration_id);
 
   CellService& service_;
   EventHub& hub_;
-  std::map<std::string, std::string> jobs_;  // under way when last looked, by sensor
+  std::map<std::string, std::string> ended_;  // calibration last told to have ended, by sensor
 };
 
 }  // namespace calibrd::api

@@ -120,7 +120,8 @@ struct SensorReport {
   TimeOffsetReport time_offset;
   PoseState pose_state = PoseState::uncalibrated;
   bool pose_valid = false;
-  std::string job;
+  std::string job;        ///< id of the calibration under way
+  std::string ended_job;  ///< id of the one that has ended last, since the daemon began
 };
 
 struct LinkPlacement {

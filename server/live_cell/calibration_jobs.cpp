@@ -165,6 +165,12 @@ std::string CalibrationJobs::active(const std::string& sensor_id) const {
   return {};
 }
 
+std::string CalibrationJobs::ended(const std::string& sensor_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = ended_.find(sensor_id);
+  return found == ended_.end() ? std::string() : found->second;
+}
+
 void CalibrationJobs::tell_of_drop(const std::string& id) const {
   JobPointer job;
   std::optional<CalibrationReport> report;

@@ -80,6 +80,8 @@ class CalibrationJobs {
   Result<api::CalibrationReport> cancel(const std::string& id);
   /// Id of the sensor's calibration under way; empty: none.
   std::string active(const std::string& sensor_id) const;
+  /// Id of the sensor's calibration that has ended last, of those of this run; empty: none.
+  std::string ended(const std::string& sensor_id) const;
 
   /// Cancels everything under way and ends the thread; a computation under way ends at its next look at the
   /// flag.
@@ -123,7 +125,8 @@ class CalibrationJobs {
 
   mutable std::mutex mutex_;  // guards what follows, and every Job's report and phase
   std::condition_variable changed_;
-  std::map<std::string, JobPointer> jobs_;  // those under way
+  std::map<std::string, JobPointer> jobs_;    // those under way
+  std::map<std::string, std::string> ended_;  // calibration by sensor
   bool is_stopping_ = false;
 
   std::thread thread_;

@@ -229,6 +229,7 @@ void CalibrationJobs::end(const JobPointer& job, JobStatus status, std::string m
   log_(report, seen_at);
   const std::lock_guard lock(mutex_);
   jobs_.erase(report.id);
+  ended_[report.sensor_id] = report.id;
 }
 
 /// Stores the end, and that it is current now if it is to be. False: it could not be stored; a pose that is

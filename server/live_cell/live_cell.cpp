@@ -189,6 +189,7 @@ std::optional<Pose> LiveCell::guess_for(const Entry& entry, const api::Calibrati
 api::SensorReport LiveCell::report_of(const Entry& entry) const {
   auto report = entry.sensor->report();
   report.job = jobs_.active(report.id);
+  report.ended_job = jobs_.ended(report.id);
   return report;
 }
 

@@ -79,6 +79,17 @@ test("a question is answered by keyboard alone, and the focus comes back", async
   await part(page, "job").waitFor({ state: "hidden" });
 });
 
+test("tabs are reached and changed by keyboard", async () => {
+  await page.locator("#tab-act").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.locator("#tab-history").getAttribute("aria-selected"), "true");
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("End");
+  assert.equal(await page.locator("#tab-pose").getAttribute("aria-selected"), "true");
+  await page.keyboard.press("Home");
+  assert.equal(await page.locator("#tab-act").getAttribute("aria-selected"), "true");
+});
+
 test("of a long history the newest are shown, and older ones when they are asked for", async () => {
   const ids = [];
   for (let count = 0; count < 24; ++count) ids.push(await cancelled(LEFT));

@@ -272,17 +272,6 @@ test("light and dark, on a screen and on a tablet: all of it is there", async ()
   await page.setViewportSize({ width: 1280, height: 720 });
 });
 
-test("tabs are reached and changed by keyboard", async () => {
-  await page.locator("#tab-act").focus();
-  await page.keyboard.press("ArrowRight");
-  assert.equal(await page.locator("#tab-history").getAttribute("aria-selected"), "true");
-  await page.keyboard.press("ArrowLeft");
-  await page.keyboard.press("End");
-  assert.equal(await page.locator("#tab-pose").getAttribute("aria-selected"), "true");
-  await page.keyboard.press("Home");
-  assert.equal(await page.locator("#tab-act").getAttribute("aria-selected"), "true");
-});
-
 test("the 3D view is turned, moved and neared by keyboard", async () => {
   const view = part(page, "cell");
   const ground = async () => (await view.screenshot()).toString("base64");

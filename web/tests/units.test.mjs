@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./lib/modules.mjs";
 
-const page = await load("view/splat", "view/solid", "view/light", "view/comparison", "view/rays", "api/frames", "panels/heat");
+const page = await load("view/splat", "view/solid", "view/light", "view/comparison", "view/rays", "api/frames", "panels/heat", "ui/one_at_a_time");
 const { DEPTH_STEPS, EMPTY, LIGHT_LEVELS, Matrix4, PerspectiveCamera, SHADE_BITS, SHADES, Vector3 } = page;
 
 const [WIDTH, HEIGHT] = [90, 60];
@@ -149,4 +149,23 @@ test("a ray of a lens that distorts is the one that the lens puts on its pixel",
     const seenAt = [camera.fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + camera.cx, camera.fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + camera.cy];
     assert.ok(Math.hypot(seenAt[0] - u, seenAt[1] - v) < 0.01, `pixel ${u}, ${v}: ${seenAt}`);
   }
+});
+
+test("what is asked for while it is done is done once more, and never twice at once", async () => {
+  const answers = [];
+  let [begun, underWay, most] = [0, 0, 0];
+  const ask = page.oneAtATime(async () => {
+    begun += 1;
+    most = Math.max(most, ++underWay);
+    await new Promise((resolve) => answers.push(resolve));
+    underWay -= 1;
+  });
+  const all = [ask(), ask(), ask()];
+  assert.equal(begun, 1);
+  answers.shift()();
+  await Promise.resolve().then(() => undefined).then(() => undefined);
+  assert.deepEqual([begun, most], [2, 1]);
+  answers.shift()();
+  await Promise.all(all);
+  assert.deepEqual([begun, underWay], [2, 0]);
 });

@@ -52,9 +52,18 @@ TEST_F(Feed, TellsHowACalibrationGoesOnAndHowItEnds) {
   cell_.calibration_report.status = JobStatus::failed;
   cell_.calibration_report.message = "too few postures";
   cell_.sensor_report.job = "";
+  cell_.sensor_report.ended_job = "c1";
   const auto end = look();
   EXPECT_NE(end.find("\"failed\""), std::string::npos) << end;
   EXPECT_NE(end.find("too few postures"), std::string::npos) << end;
+  EXPECT_EQ(look(), "");
+}
+
+TEST_F(Feed, TellsTheEndOfACalibrationThatCameAndWentBetweenTwoLooks) {
+  look();
+  cell_.calibration_report.status = JobStatus::cancelled;
+  cell_.sensor_report.ended_job = cell_.calibration_report.id;
+  EXPECT_NE(look().find("\"cancelled\""), std::string::npos);
   EXPECT_EQ(look(), "");
 }
 

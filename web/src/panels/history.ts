@@ -4,6 +4,7 @@ import { explain } from "../api/client";
 import type { Calibration, CalibrationDiff } from "../api/types";
 import { h, keepingFocus } from "../ui/dom";
 import { mm, mrad, percent, when } from "../ui/format";
+import { oneAtATime } from "../ui/one_at_a_time";
 import { activate } from "./actions";
 import { type Context, perform } from "./context";
 import { ErrorCharts } from "./error_charts";
@@ -24,6 +25,7 @@ export class HistoryPanel {
   private repaintedAt = 0;
   private shown = SHOWN;
   private readonly older = h("button", { class: "small", hidden: true, "data-test": "older" }, "Older ones");
+  private readonly refresh = oneAtATime(() => this.fetch());
   readonly element: HTMLElement;
 
   constructor(private readonly context: Context) {
@@ -52,7 +54,7 @@ export class HistoryPanel {
     this.charts.resize();
   }
 
-  private async refresh(): Promise<void> {
+  private async fetch(): Promise<void> {
     const { state, calibrations, notices } = this.context;
     if (!state.isLive || !state.chosen.value) return;
     const sensor = state.chosen.value;
