@@ -16,19 +16,21 @@ constexpr auto kPatience = std::chrono::milliseconds(400);
 void FreezeWatch::on_joints(Clock::time_point stamp, bool changed) {
   if (!changed) return;
   is_frozen_ = false;
-  if (suspect_since_) suspect_since_ = stamp;
+  unchanged_ = Clock::duration::zero();
+  if (in_motion_at_) in_motion_at_ = stamp;
 }
 
 void FreezeWatch::on_status(Clock::time_point stamp, std::optional<bool> in_motion) {
   newest_status_ = stamp;
   if (!in_motion.value_or(false)) {
-    suspect_since_.reset();
+    in_motion_at_.reset();
     return;
   }
   in_motion_.push_back(stamp);
   while (stamp - in_motion_.front() > span_) in_motion_.pop_front();
-  if (!suspect_since_) suspect_since_ = stamp;
-  if (stamp - *suspect_since_ >= kPatience) is_frozen_ = true;
+  if (in_motion_at_) unchanged_ += std::max(Clock::duration::zero(), stamp - *in_motion_at_);
+  in_motion_at_ = stamp;
+  if (unchanged_ >= kPatience) is_frozen_ = true;
 }
 
 bool FreezeWatch::said_in_motion(Clock::time_point begin, Clock::time_point end) const {

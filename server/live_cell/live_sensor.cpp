@@ -121,6 +121,7 @@ void LiveSensor::finish(FrameDecision decision) {
   const bool usable = decision.verdict == FrameVerdict::usable,
              timed = decision.verdict == FrameVerdict::timed;
   finished->view.is_moving = !usable;
+  finished->timing_error_m = decision.timing_error_m;
   const std::shared_ptr<const Sighting> sighting = finished;
   note(decision.verdict);
   {

@@ -9,6 +9,8 @@ namespace {
 
 /// A frame older than this is not what the sensor sees now.
 constexpr auto kFreshFrame = std::chrono::seconds(1);
+/// Three times as much is what is taken for the robot around where its joints put it.
+constexpr double kMostTimingError_m = 0.007;
 
 }  // namespace
 
@@ -25,6 +27,10 @@ Result<SoundSighting> sound_sighting(const LiveSensor& sensor, bool needs_joints
   if (!sighting) return fail(api::ApiError::no_frame, sensor.id() + ": " + sensor.hindrance());
   if (needs_joints && sighting->view.joint_positions_rad.empty())
     return fail(api::ApiError::joints_stale, sensor.id() + ": at the time of the newest frame");
+  if (needs_joints && sighting->timing_error_m.value_or(1) > kMostTimingError_m)
+    return fail(api::ApiError::joints_stale,
+                sensor.id() + ": the robot moves, and the time offset between its joints and the frames is " +
+                    (sighting->timing_error_m ? "not known well enough for its speed" : "not known (yet)"));
   return SoundSighting{std::move(sighting), *std::move(pose.known)};
 }
 

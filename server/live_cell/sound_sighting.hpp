@@ -16,7 +16,7 @@ struct SoundSighting {
 };
 
 /// Errors: ApiError::pose_not_valid, no_frame; joints_stale where `needs_joints` and those of the frame's
-/// time are not known.
+/// time are not known, or where they leave a moving robot uncertain by centimetres.
 Result<SoundSighting> sound_sighting(const LiveSensor& sensor, bool needs_joints);
 
 }  // namespace calibrd
