@@ -126,6 +126,15 @@ start_daemon() {
   [ "$(stat -c %u "/proc/$daemon")" = $kUser ] || die "the daemon does not run as its user"
 }
 
+# It can write what it has to although /data is all that it can write.
+check_captures() {
+  local job
+  curl -fsS --json '{"postures": 1, "timeout_s": 60}' "$api/api/v1/sensors/$kSensor/captures" -o "$work/capture.tar" || die "no capture can be made"
+  tar -tf "$work/capture.tar" | grep -q '/capture.json$' || die "the capture holds no capture.json"
+  job=$(jq -r .calibration "$work/first.json")
+  curl -fsS "$api/api/v1/calibrations/$job/capture" -o "$work/views.tar" || die "the views of the calibration are not kept"
+}
+
 # Until it has ended by itself, as `docker stop` has it.
 stop_daemon() {
   local told
@@ -190,6 +199,7 @@ start_cell
 start_daemon
 calibrate
 say "from the start to the first valid pose: $(since "$begin") s; memory of the daemon and its child: $(memory) MiB"
+check_captures
 stop_daemon
 start_daemon
 find_pose_again

@@ -56,7 +56,7 @@ constexpr std::array kTable{
     Row{ApiError::no_such_motion, {404, "no_such_motion", "No motion has this id.", "Use an id of GET /api/v1/robot/motions; those of before a restart are gone."}},
     Row{ApiError::no_such_motion_route, {404, "no_such_motion_route", "No list of postures has this name.", "Use a name of routes of GET /api/v1/robot/motions, or add motion.routes.NAME to the configuration."}},
     Row{ApiError::storage_failed, {500, "storage_failed", "The calibration store failed.", "Check disk space and permissions of storage.path; the log names the fault."}},
-    Row{ApiError::capture_failed, {500, "capture_failed", "The capture could not be written.", "Check disk space and permissions of the temporary folder (TMPDIR)."}},
+    Row{ApiError::capture_failed, {500, "capture_failed", "The capture could not be written.", "Check disk space and permissions of the folder of storage.path."}},
     Row{ApiError::header_too_large, {431, "header_too_large", "The request header is too large.", "Send at most 8 KiB of header."}},
     Row{ApiError::body_too_large, {413, "body_too_large", "The request body is too large.", "Send at most 64 KiB."}},
     Row{ApiError::too_many_connections, {503, "too_many_connections", "Too many connections are open.", "Reuse connections, or raise server.max_connections."}},

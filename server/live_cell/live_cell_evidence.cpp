@@ -46,7 +46,9 @@ Result<api::CaptureArchive> LiveCell::archive(const LiveSensor& sensor, std::spa
   capture.camera = sensor.camera();
   capture.views.assign(views.begin(), views.end());
   bring_to_one_unit(capture.views);
-  return archive_capture(capture, settings_.search_paths);
+  const auto scratch =
+      settings_.captures ? settings_.captures->scratch() : std::filesystem::temp_directory_path();
+  return archive_capture(capture, settings_.search_paths, scratch);
 }
 
 Result<api::CalibrationReport> LiveCell::calibration(std::string_view id) const {

@@ -14,12 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own below the system's temporary one, removed at the end.
+/// A folder of its own below another, removed at the end.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
+  explicit TemporaryFolder(const fs::path& parent) {
     std::error_code failure;
-    auto name = (fs::temp_directory_path(failure) / "calibrd-capture.XXXXXX").string();
+    fs::create_directories(parent, failure);
+    auto name = (parent / "capture.XXXXXX").string();
     if (!failure && mkdtemp(name.data()) != nullptr) path_ = name;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -37,9 +38,11 @@ Error translated(const Error& error) { return fail(api::ApiError::capture_failed
 
 }  // namespace
 
-Result<api::CaptureArchive> archive_capture(const Capture& capture, std::span<const fs::path> search_paths) {
-  const TemporaryFolder temporary;
-  if (temporary.path().empty()) return fail(api::ApiError::capture_failed, "no temporary folder can be made");
+Result<api::CaptureArchive> archive_capture(const Capture& capture, std::span<const fs::path> search_paths,
+                                            const fs::path& scratch) {
+  const TemporaryFolder temporary(scratch);
+  if (temporary.path().empty())
+    return fail(api::ApiError::capture_failed, "no folder can be made in " + scratch.string());
   const auto name = capture.sensor_id + "-" + utc_text(std::chrono::system_clock::now(), kUtcCompact);
   const auto folder = temporary.path() / name;
   if (auto written = write_capture(folder, capture, "robot.urdf"); !written)

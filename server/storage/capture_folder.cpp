@@ -45,7 +45,12 @@ std::vector<Kept> oldest_first(const fs::path& folder) {
 fs::path capture_folder_of(const fs::path& database) { return database.parent_path() / "captures"; }
 
 CaptureFolder::CaptureFolder(fs::path folder, CaptureLimits limits)
-    : folder_(std::move(folder)), limits_(limits) {}
+    : folder_(std::move(folder)), limits_(limits) {
+  std::error_code ignored;
+  fs::remove_all(scratch(), ignored);
+}
+
+fs::path CaptureFolder::scratch() const { return folder_ / ".making"; }
 
 fs::path CaptureFolder::file_of(const std::string& calibration_id) const {
   return folder_ / (calibration_id + kEnding);

@@ -22,7 +22,11 @@ struct CaptureLimits {
 /// those of calibrations: they become names of files. Safe to call from any thread. Errors: StorageError.
 class CaptureFolder {
  public:
+  /// Removes what an earlier daemon has left in scratch().
   CaptureFolder(std::filesystem::path folder, CaptureLimits limits);
+
+  /// For what is being made. Beside what is kept: a service need not be able to write anywhere else.
+  std::filesystem::path scratch() const;
 
   bool keeps_any() const { return limits_.age.count() > 0 && limits_.bytes > 0; }
   /// Makes room for it first.

@@ -5,11 +5,13 @@
 
 import io
 import json
+import os
 import struct
 import subprocess
 import tarfile
 import unittest
 import zlib
+from unittest import mock
 
 from cell import BIN, SENSOR, CellTest, call
 from poses import axis_turn, difference, multiply, shift
@@ -31,7 +33,8 @@ class Recording(CellTest):
         """Records from the live cell; leaves the capture's folder, the true pose and a guess off by some."""
         simulator = self.simulate()
         simulator.hurry()
-        daemon = self.serve(simulator).wait_ready()
+        with mock.patch.dict(os.environ, TMPDIR="/nonexistent"):  # it writes where its storage is, and nowhere else
+            daemon = self.serve(simulator).wait_ready()
         answer = call(daemon.port, "POST", f"/api/v1/sensors/{SENSOR}/captures",
                       {"postures": POSTURES, "timeout_s": 120, "note": "end to end"}, timeout_s=150)
         self.assertEqual(answer.status, 200, answer.body[:500])

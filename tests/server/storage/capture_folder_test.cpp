@@ -35,6 +35,15 @@ TEST_F(Captures, AreReadBackUntilTheyAreTooOld) {
   EXPECT_EQ(captures.size("b"), 10U);
 }
 
+TEST_F(Captures, WhatAnEarlierDaemonWasMakingIsRemovedAndWhatIsKeptStays) {
+  const CaptureFolder earlier(folder_.path(), {});
+  std::filesystem::create_directories(earlier.scratch() / "capture.x/half done");
+  std::ofstream(folder_.path() / "a.tar") << "views of a";
+  const CaptureFolder captures(folder_.path(), {});
+  EXPECT_FALSE(std::filesystem::exists(captures.scratch()));
+  EXPECT_EQ(captures.size("a"), 10U);
+}
+
 TEST_F(Captures, TheOldestMakeRoom) {
   CaptureFolder captures(folder_.path(), {hours(24), 250});
   for (const char* id : {"a", "b"}) EXPECT_TRUE(captures.keep(id, std::string(100, 'x')));
