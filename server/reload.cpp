@@ -16,18 +16,22 @@ std::string list_of(const std::vector<std::string>& keys) {
   return list.empty() ? "none" : list;
 }
 
-void stay(const Error& why) { spdlog::error("SIGHUP: the configuration stays as it was: {}", why.message()); }
+void stay(Daemon& daemon, const Error& why) {
+  spdlog::error("SIGHUP: the configuration stays as it was: {}", why.message());
+  daemon.note_reload(false, why.message());
+}
 
 }  // namespace
 
 void reload(const ConfigSources& sources, Daemon& daemon, Config& now) {
   const auto fresh = load_config(sources);
-  if (!fresh) return stay(fresh.error());
+  if (!fresh) return stay(daemon, fresh.error());
   const auto changes = changes_between(now, fresh->config);
   Config next = with_live_keys(now, fresh->config);
-  if (const auto status = daemon.apply(next); !status) return stay(status.error());
+  if (const auto status = daemon.apply(next); !status) return stay(daemon, status.error());
   set_log_level(next.log.level);
   now = std::move(next);
+  daemon.note_reload(true, list_of(changes.live));
   spdlog::info(
       "SIGHUP: the configuration was read again, certificates and tokens too; changed keys applied: {}",
       list_of(changes.live));

@@ -14,6 +14,7 @@
 #include "server/config/config_warnings.hpp"
 #include "server/config/load_config.hpp"
 #include "server/config/print_config.hpp"
+#include "server/daemon/checked_config.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/end_signal.hpp"
 #include "server/logging/logging.hpp"

@@ -3,11 +3,13 @@
 #include "server/support_bundle_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "core/base/utc_text.hpp"
 #include "server/config/load_config.hpp"
@@ -25,11 +27,12 @@ constexpr std::size_t kListed = 50;
 /// Of a daemon that does not answer: what a person would look at first.
 std::string bundle_without_daemon(const LoadedConfig& loaded, const std::string& why) {
   const auto& database = loaded.config.storage.path;
-  const BundleFiles files{{"version.txt", "calibrd " CALIBRD_VERSION "\n"},
-                          {"daemon.txt", "The daemon did not answer: " + why + "\n"},
-                          {"config.toml", without_secrets(config_as_toml(loaded))},
-                          {"storage.txt", list_of_files(database.parent_path(), kListed)},
-                          {"captures.txt", list_of_files(capture_folder_of(database), kListed)}};
+  BundleFiles files{{"version.txt", "calibrd " CALIBRD_VERSION "\n"},
+                    {"daemon.txt", "The daemon did not answer: " + why + "\n"},
+                    {"config.toml", without_secrets(config_as_toml(loaded))},
+                    {"storage.txt", list_of_files(database.parent_path(), kListed)},
+                    {"captures.txt", list_of_files(capture_folder_of(database), kListed)}};
+  std::ranges::move(newest_captures(capture_folder_of(database)), std::back_inserter(files));
   return bundle_of(files, std::chrono::system_clock::now()).tar;
 }
 

@@ -6,8 +6,8 @@
 
 #include "api/http/http_server.hpp"
 #include "api/routes/routes.hpp"
-#include "core/robot/controller_frame.hpp"
 #include "drivers/sensor/sensor_process.hpp"
+#include "server/daemon/checked_config.hpp"
 #include "server/daemon/conversions.hpp"
 #include "server/daemon/descriptor_limit.hpp"
 #include "server/daemon/event_log.hpp"
@@ -29,42 +29,6 @@ namespace {
 
 constexpr auto kHttpGrace = std::chrono::milliseconds(200);
 
-/// Nothing where none is configured.
-Result<std::optional<ControllerFrame>> controller_frame(const RobotModel& model, const RobotConfig& robot) {
-  if (robot.controller_frame.empty()) return std::optional<ControllerFrame>();
-  auto frame = find_controller_frame(model, robot.controller_frame);
-  if (!frame) return Error{frame.error().code, "robot.controller_frame " + frame.error().detail};
-  return std::optional(*std::move(frame));
-}
-
-Result<RobotModel> load_model(const RobotConfig& robot) {
-  auto model = RobotModel::load(robot.urdf, {robot.search_paths, robot.base_link});
-  if (!model) return model;
-  if (const auto frame = controller_frame(*model, robot); !frame) return frame.error();
-  return model;
-}
-
-Result<JointMapping> make_mapping(const Config& config, const RobotModel& model) {
-  const auto wanted = mapping_config(config.robot, model.position_names());
-  auto mapping = JointMapping::make(wanted, model.position_names());
-  if (mapping)
-    if (const auto doubt = find_pendant_order(*mapping)) spdlog::warn("robot.joints: {}", doubt->message());
-  return mapping;
-}
-
-Status check_sensors(const Config& config) {
-  for (const auto& [id, sensor] : config.sensors)
-    if (auto status = check(sensor_settings(id, sensor)); !status)
-      return Error{status.error().code, "sensors." + id + ": " + status.error().detail};
-  return Done{};
-}
-
-Status check_tokens(const ServerConfig& server) {
-  if (server.tokens_file.empty()) return Done{};
-  if (const auto tokens = read_tokens(server.tokens_file); !tokens) return tokens.error();
-  return Done{};
-}
-
 AuditSettings audit_settings(const Config& config) {
   return {config.storage.path.parent_path() / "audit.jsonl",
           static_cast<std::uint64_t>(config.audit.max_file_mb) * 1'000'000, config.audit.files};
@@ -79,19 +43,6 @@ std::filesystem::path page_folder() {
 
 }  // namespace
 
-Status check_config(const Config& config) {
-  if (auto status = check_exposure(config.server); !status) return status;
-  if (auto status = check_tokens(config.server); !status) return status;
-  const auto model = load_model(config.robot);
-  if (!model) return model.error();
-  const auto mapping = make_mapping(config, *model);
-  if (!mapping) return mapping.error();
-  if (auto status = check_motion(config, *model, *mapping); !status) return status;
-  if (auto status = check(link_settings(config.robot)); !status) return status;
-  if (auto status = check_mqtt(config); !status) return status;
-  return check_sensors(config);
-}
-
 /// In the order they are made; they end in the opposite one.
 struct Daemon::Parts {
   std::unique_ptr<Operations> operations;
@@ -101,12 +52,12 @@ struct Daemon::Parts {
   std::unique_ptr<const RobotModel> model;
   std::unique_ptr<const VirtualCell> virtual_cell;
   std::unique_ptr<MotionLink> motion;  // only where the robot may be moved
+  std::unique_ptr<AuditLog> audit;     // outlives all that changes something
   FleetBell fleet;                     // outlives the cell, which rings it; its link does not
   std::unique_ptr<LiveCell> cell;
   std::unique_ptr<RobotLink> link;
   std::unique_ptr<FeedThread> feed;
   api::Router router;
-  std::unique_ptr<AuditLog> audit;
   std::shared_ptr<api::Authenticator> authenticator;  // only where tokens are asked for
   std::unique_ptr<api::HttpServer> http;
   std::unique_ptr<ServiceWatch> service_watch;
@@ -130,6 +81,7 @@ struct Daemon::Parts {
         capture_folder_of(config.storage.path),
         CaptureLimits{config.storage.captures_max_age,
                       static_cast<std::uint64_t>(config.storage.captures_max_mb) * 1'000'000});
+    audit = std::make_unique<AuditLog>(audit_settings(config), log_error);
     store_watch = std::make_unique<StoreWatch>(*store, log_storage, [this] {
       captures->remove_old();
       operations->look_at_disk();
@@ -167,6 +119,12 @@ struct Daemon::Parts {
     const auto on_calibration = [this](const api::CalibrationReport& calibration) {
       operations->note(calibration);
       log_calibration(calibration);
+      if (calibration.current)
+        audit->note({"calibrd",
+                     "pose of " + calibration.sensor_id,
+                     true,
+                     "/api/v1/calibrations/" + calibration.id,
+                     {}});
       fleet.ring();
     };
     return {on_calibration, log_pose, log_error, log_motion, log_calibration_start};
@@ -190,7 +148,10 @@ struct Daemon::Parts {
   /// Who may come in, and who is told of what they do.
   Status make_doors(const Config& config, api::HttpServerSettings& settings) {
     if (!config.server.tokens_file.empty()) {
-      auto tokens = TokenStore::open(config.server.tokens_file, log_security);
+      const auto on_change = [this](const std::string& what, bool is_done) {
+        audit->note({"tokens file", "tokens", is_done, {}, what});
+      };
+      auto tokens = TokenStore::open(config.server.tokens_file, log_security, on_change);
       if (!tokens) return tokens.error();
       authenticator = *std::move(tokens);
       settings.door.authenticator = authenticator;
@@ -199,7 +160,6 @@ struct Daemon::Parts {
           "server.allow_unauthenticated: whoever reaches " + config.server.address + " may do everything",
           false);
     }
-    audit = std::make_unique<AuditLog>(audit_settings(config), log_error);
     settings.audit = [this](const api::AuditRecord& record) { audit->write(record); };
     return Done{};
   }
@@ -292,6 +252,10 @@ Status Daemon::apply(const Config& config) {
   settings.max_connections = room_for_connections(settings.max_connections);
   settings.door.authenticator = parts_->authenticator;
   return parts_->http->apply(settings);
+}
+
+void Daemon::note_reload(bool is_done, const std::string& detail) {
+  parts_->audit->note({"SIGHUP", "configuration", is_done, {}, detail});
 }
 
 std::uint16_t Daemon::http_port() const { return parts_->http->port(); }

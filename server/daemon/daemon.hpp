@@ -12,10 +12,6 @@
 
 namespace calibrd {
 
-/// Checks what a configuration points to: robot model, joints, sensors' settings. Opens no port and no store.
-/// The error names the file or key at fault.
-Status check_config(const Config& config);
-
 /// Who is told how the daemon is; all may be absent.
 struct ServiceManager {
   const NotifySocket* socket = nullptr;  ///< must outlive the daemon
@@ -40,6 +36,8 @@ class Daemon {
   /// Takes over the live keys of a configuration (with_live_keys()), and reads certificates again. With an
   /// error nothing has changed.
   Status apply(const Config& config);
+  /// That a configuration was read again, for the audit log: changed keys, or why it was not taken over.
+  void note_reload(bool is_done, const std::string& detail);
 
   /// Ends everything in good order.
   void stop();

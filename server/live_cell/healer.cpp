@@ -77,10 +77,11 @@ void Healer::plan(Patient& patient, Clock::time_point now) const {
 }
 
 void Healer::on_calibration(const api::CalibrationReport& calibration, Clock::time_point seen_at) {
+  if (!calibration.finished) return;
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !is_starting_; });  // it may be the one that is just being started
   const auto found = patients_.find(calibration.sensor_id);
-  if (found == patients_.end() || !calibration.finished) return;
+  if (found == patients_.end()) return;
   Patient& patient = found->second;
   if (!patient.under_way || patient.under_way->calibration_id != calibration.id) {  // somebody's own
     if (calibration.current) patient.wants_all = false;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/operations/operations.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "api/metrics/cell_metrics.hpp"
 #include "api/routes/names.hpp"
 #include "server/logging/logging.hpp"
@@ -113,6 +116,7 @@ api::CaptureArchive Operations::support_bundle() const {
   files.emplace_back("captures.txt", list_of_files(facts_.captures, kListedCaptures));
   files.emplace_back("log.txt", newest_log_lines());
   files.emplace_back("audit.log", end_of_file(facts_.audit_log, kAuditBytes));
+  std::ranges::move(newest_captures(facts_.captures), std::back_inserter(files));
   return bundle_of(files, std::chrono::system_clock::now());
 }
 

@@ -21,9 +21,10 @@ constexpr const char* kReadMe =
     "What calibrd knows of itself, for somebody who is to help. Secrets of the configuration are left out.\n"
     "config.toml: the configuration in effect. readyz.json: what is missing. metrics.txt: docs/metrics.md.\n"
     "cell.json, sensors/: robot, sensors, poses, drift and the newest calibrations as docs/api.md says.\n"
-    "captures.txt: views of calibrations that are kept on the machine; they are not in here. log.txt: the "
-    "newest\n"
-    "lines of the log. audit.log: the end of the audit log, where there is one.\n\n";
+    "captures.txt: views of calibrations that are kept on the machine; captures/: the newest of them, to be\n"
+    "unpacked and given to `calibrd calibrate`. log.txt: the newest lines of the log. audit.log: the end of "
+    "the\n"
+    "audit log, where there is one.\n\n";
 
 bool is_secret(const std::string& line) {
   const auto equals = line.find(" = ");
@@ -40,6 +41,7 @@ struct ListedFile {
   std::string name;
 };
 
+/// Newest first.
 std::vector<ListedFile> files_in(const fs::path& folder) {
   std::vector<ListedFile> files;
   std::error_code failure;
@@ -50,6 +52,7 @@ std::vector<ListedFile> files_in(const fs::path& folder) {
     files.push_back(
         {entry->last_write_time(ignored), entry->file_size(ignored), entry->path().filename().string()});
   }
+  std::ranges::sort(files, std::ranges::greater(), &ListedFile::modified);
   return files;
 }
 
@@ -81,12 +84,23 @@ std::string end_of_file(const fs::path& file, std::size_t bytes) {
 
 std::string list_of_files(const fs::path& folder, std::size_t most) {
   auto files = files_in(folder);
-  std::ranges::sort(files, std::ranges::greater(), &ListedFile::modified);
   std::string text = folder.string() + ": " + std::to_string(files.size()) + " files\n";
   files.resize(std::min(files.size(), most));
   for (const auto& file : files)
     text += time_of(file.modified) + " " + std::to_string(file.bytes) + " " + file.name + "\n";
   return text;
+}
+
+BundleFiles newest_captures(const fs::path& folder, std::uintmax_t bytes) {
+  BundleFiles captures;
+  for (const auto& file : files_in(folder)) {
+    if (file.bytes > bytes) break;
+    // Kept ones are removed at any time, by age and size: what cannot be read any more is left out.
+    std::ifstream stream(folder / file.name, std::ios::binary);
+    captures.emplace_back("captures/" + file.name, std::string{std::istreambuf_iterator<char>(stream), {}});
+    bytes -= file.bytes;
+  }
+  return captures;
 }
 
 api::CaptureArchive bundle_of(const BundleFiles& files, api::SystemTime now) {

@@ -45,15 +45,49 @@ std::string audit_line(const api::AuditRecord& record) {
   return boost::json::serialize(line) + "\n";
 }
 
+std::string audit_line(const OwnChange& change) {
+  boost::json::object line{{"time", now_text()},
+                           {"who", change.who},
+                           {"what", change.what},
+                           {"result", change.is_done ? "done" : "refused"}};
+  if (!change.made.empty()) line["made"] = change.made;
+  if (!change.detail.empty()) line["detail"] = change.detail;
+  return boost::json::serialize(line) + "\n";
+}
+
 AuditLog::AuditLog(AuditSettings settings, std::function<void(const std::string&)> on_failure)
-    : settings_(std::move(settings)), on_failure_(std::move(on_failure)) {}
+    : settings_(std::move(settings)),
+      on_failure_(std::move(on_failure)),
+      writer_([this](const std::stop_token& stopped) { write_noted(stopped); }) {}
 
 AuditLog::~AuditLog() {
+  writer_.request_stop();
+  writer_.join();
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void AuditLog::write(const api::AuditRecord& record) {
-  const auto line = audit_line(record);
+void AuditLog::write(const api::AuditRecord& record) { write_line(audit_line(record)); }
+
+void AuditLog::note(const OwnChange& change) {
+  {
+    const std::lock_guard lock(noting_);
+    noted_.push_back(audit_line(change));
+  }
+  is_noted_.notify_one();
+}
+
+void AuditLog::write_noted(const std::stop_token& stopped) {
+  std::unique_lock lock(noting_);
+  while (is_noted_.wait(lock, stopped, [this] { return !noted_.empty(); }) || !noted_.empty()) {
+    const auto line = std::move(noted_.front());
+    noted_.pop_front();
+    lock.unlock();
+    write_line(line);
+    lock.lock();
+  }
+}
+
+void AuditLog::write_line(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (append(line)) return;
   const auto why = std::generic_category().message(errno);

@@ -2,15 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/security/token_store.hpp"
 
+#include <algorithm>
+
 namespace calibrd {
 namespace {
 
 constexpr auto kLookAgainAfter = std::chrono::milliseconds(500);
 
+using Entries = std::vector<TokenEntry>;
+
+bool holds(const Entries& entries, const TokenEntry& wanted) {
+  return std::ranges::any_of(entries, [&](const TokenEntry& entry) {
+    return entry.name == wanted.name && entry.scope == wanted.scope && entry.digest == wanted.digest;
+  });
+}
+
+/// What is in `now` and was not in `before` is made, what was and is no longer is revoked: a token of another
+/// scope or digest under the same name is both.
+std::string change_between(const Entries& before, const Entries& now) {
+  std::string change;
+  const auto add = [&](const char* what, const TokenEntry& entry) {
+    change += std::string(change.empty() ? "" : ", ") + what + " " + entry.name + " (" +
+              api::name_of(entry.scope) + ")";
+  };
+  for (const auto& entry : now)
+    if (!holds(before, entry)) add("made", entry);
+  for (const auto& entry : before)
+    if (!holds(now, entry)) add("revoked", entry);
+  return change;
+}
+
 }  // namespace
 
-Result<std::shared_ptr<TokenStore>> TokenStore::open(const std::filesystem::path& file, Log log) {
-  std::shared_ptr<TokenStore> store(new TokenStore(file, std::move(log)));
+Result<std::shared_ptr<TokenStore>> TokenStore::open(const std::filesystem::path& file, Log log,
+                                                     OnChange on_change) {
+  std::shared_ptr<TokenStore> store(new TokenStore(file, std::move(log), std::move(on_change)));
   store->stamp_ = stamp_of(file);
   auto entries = read_tokens(file);
   if (!entries) return entries.error();
@@ -41,9 +67,12 @@ void TokenStore::refresh() {
   auto entries = read_tokens(file_);
   if (!entries) {  // an editor's mistake must not lock the cell out
     tell("the tokens stay as they were: " + entries.error().message(), false);
+    if (on_change_) on_change_(entries.error().message(), false);
     return;
   }
+  const auto change = change_between(entries_, *entries);
   entries_ = *std::move(entries);
+  if (on_change_ && !change.empty()) on_change_(change, true);
   tell(file_.string() + ": " + std::to_string(entries_.size()) + " tokens from now on", true);
 }
 

@@ -18,14 +18,10 @@ namespace json = boost::json;
 /// From posture to posture the robot goes for some seven seconds.
 constexpr double kQuiet_s = 2, kWatched_s = 12, kPostures_s = 60;
 constexpr double kLeastVerdict_s = 0.3;
-constexpr double kLasting_s = 2;  // shown in all, the right verdict has shown itself
 
-/// That the sensor has moved, if it was ever said; else `right`, if it was said for long enough; else what
-/// was said for longest besides "in place".
-std::string told(const std::map<std::string, double>& seconds, const std::string& right) {
+/// That the sensor has moved, if it was ever said; else what was said for longest besides "in place".
+std::string told(const std::map<std::string, double>& seconds) {
   if (seconds.contains("sensor_moved")) return "sensor_moved";
-  const auto said = seconds.find(right);
-  if (right != "in_place" && said != seconds.end() && said->second >= kLasting_s - 0.01) return right;
   std::string most = "in_place";
   double longest = kLeastVerdict_s;
   for (const auto& [name, duration] : seconds)
@@ -69,7 +65,6 @@ json::object run_event(const CalibratedScenes::One& one,
     ++frames;
     after[verdict] += 1 / RunningCell::kRate_hz;
     if (detected < 0 && verdict == right_verdict(event)) detected = frames;
-    if (event != Event::nothing && detected >= 0 && after[right_verdict(event)] >= kLasting_s) break;
   }
   json::object line{{"seed", seed},
                     {"robot", one.scene.robot->name},
@@ -77,9 +72,9 @@ json::object run_event(const CalibratedScenes::One& one,
                     {"what", what},
                     {"moved_mm", 1e3 * cell.moved_m()},
                     {"turned_mrad", 1e3 * cell.turned_rad()},
-                    {"verdict", told(after, right_verdict(event))},
+                    {"verdict", told(after)},
                     {"last", name_of(sensor.watch().report().verdict)},
-                    {"before", told(before, "in_place")},
+                    {"before", told(before)},
                     {"frames_to_verdict", detected}};
   for (auto& [key, value] : described(sensor)) line[key] = value;
   json::object seconds;

@@ -73,6 +73,14 @@ class Contract:
         if media.endswith("json") and (found := self.errors(content[media]["schema"], json.loads(answer.body))):
             raise AssertionError(f"{what}: {found[:5]}")
 
+    def check_event(self, name: str, event: str, data) -> None:
+        """Raises AssertionError when a server-sent event of the operation `name` is not as it says."""
+        events = self.operations[name][2]["responses"]["200"]["content"]["text/event-stream"]["x-events"]
+        if event not in events:
+            raise AssertionError(f"{name}: the event {event} is not documented")
+        if found := self.errors(events[event], data):
+            raise AssertionError(f"{name}: the event {event}: {found[:5]}")
+
     def flaws(self) -> list[str]:
         """What is wrong with the document itself."""
         found = []

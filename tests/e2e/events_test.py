@@ -8,17 +8,20 @@ import json
 import time
 import unittest
 
-from cell import SENSOR, CellTest
+from cell import SENSOR, CellTest, Daemon
+from contract import Contract
 
 
 class Listener:
-    """An EventSource: reads events one by one."""
+    """An EventSource: reads events one by one, and holds each against the document of the interface."""
 
-    def __init__(self, port: int, last_id: str = ""):
-        self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
-        self.connection.request("GET", "/api/v1/events", headers={"Last-Event-ID": last_id} if last_id else {})
+    def __init__(self, daemon: Daemon, last_id: str = ""):
+        self.contract = Contract(daemon.json("/openapi.json"))
+        self.connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=20)
+        self.connection.request("GET", "/api/v1/events?joints=true", headers={"Last-Event-ID": last_id} if last_id else {})
         self.answer = self.connection.getresponse()
         self.last_id = last_id
+        self.joints_heard = 0
         self.newest: dict[str, dict] = {}  # data of each kind of event
 
     def next(self) -> tuple[str, dict]:
@@ -26,8 +29,14 @@ class Listener:
         while line := self.answer.readline().decode():
             if line == "\n" and "data" in fields:
                 self.last_id = fields.get("id", self.last_id)
-                self.newest[fields["event"]] = json.loads(fields["data"])
-                return fields["event"], self.newest[fields["event"]]
+                event, data = fields["event"], json.loads(fields["data"])
+                self.contract.check_event("streamEvents", event, data)
+                fields = {}
+                if event == "joints":  # 30 a second, between all others
+                    self.joints_heard += 1
+                    continue
+                self.newest[event] = data
+                return event, data
             name, _, value = line.rstrip("\n").partition(": ")
             if name:
                 fields[name] = value
@@ -57,22 +66,23 @@ class Events(CellTest):
         simulator = self.simulate()
         simulator.hurry()
         daemon = self.serve(simulator).wait_ready()
-        listener = Listener(daemon.port)
+        listener = Listener(daemon)
         self.assertFalse(listener.wait("pose", state="uncalibrated")["valid"])
         job = daemon.start_calibration(postures=4).rsplit("/", 1)[1]
         listener.wait("calibration", calibration=job, status="collecting")
         self.assertTrue(listener.wait("calibration", calibration=job, status="succeeded")["current"])
         listener.until("drift", verdict="in_place")
+        self.assertGreater(listener.joints_heard, 0)
         listener.close()
         simulator.tell("POST", f"/sensors/{SENSOR}/knock", turn_deg=[0, 0, 3.0], shift_m=[0.02, 0.02, 0.01])
         time.sleep(1)  # away while it happens
-        listener = Listener(daemon.port, listener.last_id)
+        listener = Listener(daemon, listener.last_id)
         self.assertIn("moved", listener.until("pose", state="drifted")["reason"])
         listener.wait("calibration", status="succeeded")
         listener.close()
         daemon.stop()
         again = self.serve(simulator).wait_ready()
-        listener = Listener(again.port, listener.last_id)
+        listener = Listener(again, listener.last_id)
         self.assertEqual(listener.next()[0], "reset")
         listener.until("pose", valid=True)
         listener.close()

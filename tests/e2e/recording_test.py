@@ -13,7 +13,7 @@ import unittest
 import zlib
 from unittest import mock
 
-from cell import BIN, SENSOR, CellTest, call
+from cell import BIN, SENSOR, CellTest, call, wait_until
 from poses import axis_turn, difference, multiply, shift
 
 POSTURES = 3
@@ -45,8 +45,26 @@ class Recording(CellTest):
         guess = multiply(multiply(shift((0.02, -0.02, 0.01)), self.true_pose), axis_turn((1, 2, 0), 0.03))
         self.guess = self.folder / "guess.json"
         self.guess.write_text(json.dumps({"T_base_sensor": guess}))
+        self.check_that_a_bundle_repeats(daemon)
         daemon.stop()
         simulator.stop()
+
+    def check_that_a_bundle_repeats(self, daemon):
+        """The views of the newest calibration are in the support bundle, and give its pose again."""
+        served = daemon.calibrate()
+        kept = f"captures/{served['id']}.tar"
+        wait_until("the views are kept", (self.folder / kept).exists)
+        wait_until("the pose's change is audited", lambda: f'"made":"/api/v1/calibrations/{served["id"]}"' in (
+            (self.folder / "audit.jsonl").read_text().splitlines()[-1]))
+        bundle = tarfile.open(fileobj=io.BytesIO(daemon.get("/api/v1/support_bundle").body))
+        name = next(name for name in bundle.getnames() if name.endswith(kept))
+        with tarfile.open(fileobj=bundle.extractfile(name)) as archive:
+            archive.extractall(self.folder / "again")
+        folder = next((self.folder / "again").rglob("capture.json")).parent
+        ended = subprocess.run([BIN / "calibrd", "calibrate", folder], capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        mm, mrad = difference(json.loads(ended.stdout)["T_base_sensor"], served["result"]["T_base_sensor"])
+        self.assertLess(max(mm, mrad), 3)
 
     def calibrate(self, *options):
         return subprocess.run([BIN / "calibrd", "calibrate", self.capture, "--guess", self.guess, *options],

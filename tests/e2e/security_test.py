@@ -7,6 +7,7 @@ import contextlib
 import http.client
 import json
 import re
+import signal
 import socket
 import stat
 import subprocess
@@ -228,6 +229,20 @@ class Security(CellTest):
         self.assertEqual(self.audit()[0]["made"], job)
         self.assertEqual(self.audit()[0]["from"], "127.0.0.1")
         self.assertEqual(stat.S_IMODE((self.folder / "audit.jsonl").stat().st_mode), 0o600)
+
+    def test_what_no_request_changed_stands_in_the_audit_log_too(self):
+        token = self.create("hmi", "read")
+        daemon = self.start(self.guarded)
+        self.create("late", "calibrate")
+        daemon.process.send_signal(signal.SIGHUP)
+        wanted = {("tokens file", "tokens", "done", "made late (calibrate)"), ("SIGHUP", "configuration", "done", "none")}
+
+        def lines() -> set[tuple]:
+            ask(daemon.port, "GET", "/api/v1/cell", token)  # tokens are looked at when they are needed
+            if not (self.folder / "audit.jsonl").exists():
+                return set()
+            return {(line["who"], line["what"], line["result"], line.get("detail")) for line in self.audit()}
+        wait_until("both are told", lambda: lines() == wanted, 10)
 
     def test_a_change_that_cannot_be_audited_is_in_the_log(self):
         (self.folder / "audit.jsonl").mkdir()

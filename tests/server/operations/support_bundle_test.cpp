@@ -55,5 +55,21 @@ TEST(SupportBundle, ListsTheNewestFilesOfAFolder) {
   EXPECT_NE(list_of_files(folder, 1).find(": 0 files"), std::string::npos);
 }
 
+TEST(SupportBundle, BringsTheNewestCapturesAsFarAsThereIsRoom) {
+  const auto folder = std::filesystem::temp_directory_path() / ("calibrd_views_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder / ".making");
+  const auto now = std::filesystem::file_time_type::clock::now();
+  int age = 0;
+  for (const auto* name : {"newest.tar", "newer.tar", "old.tar"}) {
+    std::ofstream(folder / name) << "12345";
+    std::filesystem::last_write_time(folder / name, now - std::chrono::hours(age++));
+  }
+  const BundleFiles both{{"captures/newest.tar", "12345"}, {"captures/newer.tar", "12345"}};
+  EXPECT_EQ(newest_captures(folder, 14), both);
+  EXPECT_TRUE(newest_captures(folder, 4).empty());
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(newest_captures(folder).empty());
+}
+
 }  // namespace
 }  // namespace calibrd

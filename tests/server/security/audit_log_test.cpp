@@ -88,5 +88,21 @@ TEST_F(Audit, AFullDiskIsToldAndTheNextLineIsWhole) {
   EXPECT_EQ(failures_.size(), 2U);
 }
 
+TEST_F(Audit, WhatNoRequestChangedIsALineToo) {
+  {
+    AuditLog log({file_}, [this](const std::string& why) { failures_.push_back(why); });
+    log.note({"calibrd", "pose of kinect2", true, "/api/v1/calibrations/1", {}});
+    log.note({"SIGHUP", "configuration", false, {}, "line 3"});
+  }
+  const auto lines = lines_of(file_);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].at("who"), "calibrd");
+  EXPECT_EQ(lines[0].at("made"), "/api/v1/calibrations/1");
+  EXPECT_FALSE(lines[0].contains("detail"));
+  EXPECT_EQ(lines[1].at("result"), "refused");
+  EXPECT_EQ(lines[1].at("detail"), "line 3");
+  EXPECT_TRUE(failures_.empty());
+}
+
 }  // namespace
 }  // namespace calibrd

@@ -120,6 +120,24 @@ TEST_F(Tokens, WithoutAFileThereAreNone) {
   EXPECT_EQ((*store)->size(), 0U);
 }
 
+TEST_F(Tokens, WhatChangesInTheFileIsTold) {
+  create("old");
+  std::vector<std::pair<std::string, bool>> told;
+  const auto store = TokenStore::open(
+      file_, {}, [&](const std::string& what, bool is_done) { told.emplace_back(what, is_done); });
+  ASSERT_TRUE(store);
+  create("hmi", Scope::calibrate);
+  ASSERT_TRUE(revoke_token(file_, "old"));
+  (*store)->refresh();
+  (*store)->refresh();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0], std::pair(std::string("made hmi (calibrate), revoked old (read)"), true));
+  std::ofstream(file_) << "{";
+  (*store)->refresh();
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_FALSE(told[1].second);
+}
+
 TEST_F(Tokens, AFolderThatIsNotThereIsNamed) {
   const auto made = create_token(folder_.path / "none/tokens.json", "hmi", Scope::read);
   EXPECT_EQ(made.error().code, SecurityError::tokens_not_written);

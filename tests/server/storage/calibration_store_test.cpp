@@ -137,7 +137,9 @@ TEST_F(Store, OfBackgroundsTheNewestAndThatOfTheCurrentPoseAreKept) {
     const auto calibration = add(name(i));
     finish(calibration);
     EXPECT_TRUE(store_->add_background(name(i), {1, 2, 3}));
-    if (i == 1) EXPECT_TRUE(store_->activate(calibration, ""));
+    if (i == 1) {
+      EXPECT_TRUE(store_->activate(calibration, ""));
+    }
   }
   for (int i = 0; i < 205; ++i) EXPECT_EQ(has(name(i)), i == 1 || i >= 5) << i;
   EXPECT_EQ(store_->history({"kinect2", 500, ""})->calibrations.size(), 205U);
