@@ -66,7 +66,7 @@ bool has(const CalibrationResult& result, std::string_view code) {
 
 /// Adds what would make the rejected views fit, where something does.
 void explain(std::vector<RegistrationView>& views, const CameraModel& camera, const TriedPoses& tried,
-             CalibrationResult& result) {
+             std::chrono::milliseconds budget, CalibrationResult& result) {
   // An image that is not registered explains itself, and so does a range that is off.
   constexpr std::string_view kPoseIsWrong[] = {
       "free_space_violation",   "robot_not_found",    "views_disagree",
@@ -74,7 +74,9 @@ void explain(std::vector<RegistrationView>& views, const CameraModel& camera, co
       "joint_zero_implausible", "low_coverage",       "surface_differs"};
   if (std::ranges::none_of(kPoseIsWrong, [&](std::string_view code) { return has(result, code); })) return;
   for (RegistrationView& view : views) view.apply_zeros(Eigen::Matrix<double, kMaxJointZeros, 1>::Zero());
-  if (auto reason = diagnose(views, camera, tried, {}))
+  DiagnoseSettings settings;
+  settings.budget = budget;
+  if (auto reason = diagnose(views, camera, tried, settings))
     result.reasons.insert(result.reasons.begin(), *std::move(reason));
 }
 
@@ -108,14 +110,16 @@ class Calibration {
       CalibrationResult searched = from_nothing_unexplained();
       if (searched.verdict != Verdict::rejected || is_cancelled()) return searched;
     }
-    explain(views_, camera_, {{misled, refined_.T_base_sensor}, has(result, "surface_differs")}, result);
+    explain(views_, camera_, {{misled, refined_.T_base_sensor}, has(result, "surface_differs")},
+            settings_.explaining, result);
     return result;
   }
 
   CalibrationResult from_nothing() {
     CalibrationResult result = from_nothing_unexplained();
     if (result.verdict == Verdict::rejected && !is_cancelled())
-      explain(views_, camera_, {{refined_.T_base_sensor}, has(result, "surface_differs")}, result);
+      explain(views_, camera_, {{refined_.T_base_sensor}, has(result, "surface_differs")},
+              settings_.explaining, result);
     return result;
   }
 

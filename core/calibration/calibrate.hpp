@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -69,8 +70,10 @@ struct Hypothesis {
 struct CalibrationSettings {
   Method method = Method::full;
   std::optional<Pose> guess_T_base_sensor;
-  PaperSettings paper;                    ///< of Method::paper alone
-  bool depth_only = false;                ///< leave the images of the views aside
+  PaperSettings paper;      ///< of Method::paper alone
+  bool depth_only = false;  ///< leave the images of the views aside
+  /// For finding out why views are rejected; a busy computer gets less far in it.
+  std::chrono::milliseconds explaining{6000};
   std::vector<WorkspacePoint> workspace;  ///< where the result is to tell its predicted error
   std::function<void(double)>
       on_progress;  ///< called with 0..1 from the calling thread; begins anew with a search

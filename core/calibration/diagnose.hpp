@@ -17,7 +17,7 @@ struct DiagnoseSettings {
   double least_gain = 0.02;   ///< ... so much better than the input as it came ...
   double least_mended = 0.4;  ///< ... and mend this share of what the input leaves open
   double convincing = 0.95;   ///< nothing further is tried when an explanation fits so well
-  /// No explanation is begun after it: for computers that are very busy.
+  /// No explanation is begun after it.
   std::chrono::milliseconds budget{6000};
 };
 

@@ -136,11 +136,11 @@ test("a token that is taken away ends the page's look, and another one gives wha
   const operator = Cell.token(file, "operator", "calibrate");
   Cell.revoke(file, "screen");
   cell.daemon.process.kill("SIGHUP");
-  await waitUntil("it asks for another one", async () => /not know/.test(await page.locator("dialog[open] .error").textContent()), 10_000);
+  await waitUntil("it asks for another one", async () => /not know/.test(await page.locator("dialog[open] .error").textContent()));
   assert.equal(await part(page, "calibrate").count(), 0);
   await enter(operator);
-  await says("who", "operator (calibrate)", 10_000);
-  await says("connection", "live", 10_000);
+  await says("who", "operator (calibrate)");
+  await says("connection", "live");
   await part(page, "calibrate").waitFor({ state: "attached" });
   await page.getByRole("button", { name: "Forget the token" }).click();
   await part(page, "token").waitFor();

@@ -47,7 +47,9 @@ Trial good_trial() {
 }
 
 CalibrationResult calibrated(const Trial& trial) {
-  return calibrate(*trial.model, trial.camera, trial.views, {});
+  CalibrationSettings settings;
+  settings.explaining = std::chrono::minutes(10);  // however busy the computer is
+  return calibrate(*trial.model, trial.camera, trial.views, settings);
 }
 
 std::string codes_of(const CalibrationResult& result) {
