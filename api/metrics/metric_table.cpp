@@ -67,6 +67,7 @@ constexpr std::array kTable{
     MetricFamily{"calibrd_storage_database_bytes", gauge, "", "Size of the database with its write-ahead log."},
 
     MetricFamily{"calibrd_mqtt_connected", gauge, "", "1 while connected to the broker; this and what follows of it is absent without mqtt.host."},
+    MetricFamily{"calibrd_mqtt_name_contested", gauge, "", "1 while another daemon speaks to the broker under this cell's name."},
     MetricFamily{"calibrd_mqtt_connects_total", counter, "", "Connections made to the broker."},
     MetricFamily{"calibrd_mqtt_calibrations_sent_total", counter, "", "Calibrations sent to the broker; one that is sent again counts again."},
     MetricFamily{"calibrd_mqtt_calibrations_acknowledged_total", counter, "", "Calibrations that a collector has stored."},

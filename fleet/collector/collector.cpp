@@ -19,6 +19,7 @@ namespace json = boost::json;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kInbox = 20'000, kBatch = 500;  // some kilobytes each
+constexpr std::size_t kInboxBytes = 64'000'000, kBatchBytes = 4'000'000;
 constexpr milliseconds kPeriod{100};
 constexpr int kFirstPause = 2, kLastPause = 20;  // periods between tries of the database
 constexpr std::size_t kMostBytes = 1'000'000, kMostMisfits = 1000;
@@ -34,7 +35,10 @@ std::optional<std::string> name_in(const json::object& document, std::string_vie
 }  // namespace
 
 Collector::Collector(CollectorSettings settings, Log log)
-    : settings_(std::move(settings)), log_(std::move(log)), inbox_(kInbox), warehouse_(settings_.database) {}
+    : settings_(std::move(settings)),
+      log_(std::move(log)),
+      inbox_(kInbox, kInboxBytes),
+      warehouse_(settings_.database) {}
 
 MqttEvents Collector::events() {
   MqttEvents events;
@@ -92,6 +96,7 @@ Status Collector::run(const std::function<bool()>& is_ending) {
   warehouse_.end_when(is_ending);
   auto client = MqttClient::start(settings_.broker, events());
   if (!client) return client.error();
+  look_at_database();
   while (!is_ending()) {
     bool is_new = false;
     {
@@ -100,11 +105,21 @@ Status Collector::run(const std::function<bool()>& is_ending) {
     }
     if (is_new) greet(**client);
     refuse_misfits(**client);
-    auto arrivals = inbox_.take(kBatch, kPeriod);
+    auto arrivals = inbox_.take(kBatch, kBatchBytes, kPeriod);
     if (!arrivals.empty()) keep(**client, std::move(arrivals), is_ending);
   }
   (*client)->stop();
   return Done{};
+}
+
+/// What is wrong with it is said before the first calibration comes, which may be days.
+void Collector::look_at_database() {
+  const auto status = warehouse_.prepare();
+  is_prepared_ = status.has_value();
+  if (status)
+    log_("connected to the database", true);
+  else
+    say_once(status.error().message());
 }
 
 /// Until they are stored: a database that is gone comes back.
@@ -115,7 +130,7 @@ void Collector::keep(MqttClient& client, std::vector<Arrival> arrivals,
     is_prepared_ = status.has_value();
     if (status) {
       status = warehouse_.store(arrivals);
-      if (!status && warehouse_.is_connected())
+      if (!status && status.error().code != WarehouseError::out_of_resources && warehouse_.is_connected())
         return keep_one_by_one(client, std::move(arrivals), is_ending);
     }
     if (status) {
@@ -144,6 +159,7 @@ void Collector::keep_one_by_one(MqttClient& client, std::vector<Arrival> arrival
     } else if (status.error().code == WarehouseError::unfit) {
       refuse(client, arrival, status.error().detail);
     } else {
+      is_prepared_ = false;  // its tables may be gone
       say_once(status.error().message());
       inbox_.put(std::move(arrival));
       ++left;

@@ -44,6 +44,7 @@ class Collector {
   void keep(MqttClient& client, std::vector<Arrival> arrivals, const std::function<bool()>& is_ending);
   void keep_one_by_one(MqttClient& client, std::vector<Arrival> arrivals,
                        const std::function<bool()>& is_ending);
+  void look_at_database();
   void refuse_misfits(MqttClient& client);
   void pause(const std::function<bool()>& is_ending);
   void acknowledge(MqttClient& client, const std::vector<Arrival>& stored);

@@ -69,6 +69,16 @@ int collect(int argc, char** argv) {
     std::cerr << "calibrd-collector: --prefix: letters, digits, '.', '_' and '-', at most 64\n";
     return kUnusable;
   }
+  const auto& broker = settings.broker;
+  if (!broker.tls && !(broker.ca.empty() && broker.certificate.empty() && broker.key.empty())) {
+    std::cerr << "calibrd-collector: --ca, --certificate and --key are of no use without --tls: the password "
+                 "would go in clear\n";
+    return kUnusable;
+  }
+  if (const auto status = calibrd::fleet::MqttClient::check(broker); !status) {
+    std::cerr << "calibrd-collector: " << status.error().message() << '\n';
+    return kUnusable;
+  }
   setenv("PGCONNECT_TIMEOUT", "5", 0);  // else a server that is switched off holds it for minutes
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ending = 1; });
   calibrd::fleet::Collector collector(settings, write_line);

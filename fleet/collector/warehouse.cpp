@@ -49,6 +49,13 @@ bool is_final(const PGresult* rows) {
   return code.starts_with("22") || code.starts_with("23") || code.starts_with("54");
 }
 
+/// Classes of SQLSTATE that are no document's fault: no disk, no memory, read-only, shutting down.
+bool is_of_server(const PGresult* rows) {
+  const char* state = PQresultErrorField(rows, PG_DIAG_SQLSTATE);
+  const std::string_view code = state ? state : "";
+  return code.starts_with("53") || code.starts_with("57") || code.starts_with("58") || code.starts_with("25");
+}
+
 pg_conn* open_connection(const std::string& database) {
   std::vector<const char*> names(kNames.begin(), kNames.end()), values(kValues.begin(), kValues.end());
   names.insert(names.end(), {"dbname", nullptr});  // last: what it says itself goes before ours
@@ -165,9 +172,10 @@ Status Warehouse::store(const std::vector<Arrival>& arrivals) {
       PQsendQueryParams(connection_.get(), kInsert, 1, nullptr, values, nullptr, nullptr, 0) != 0;
   const auto rows = is_sent ? answer() : nullptr;
   if (is_good(rows.get())) return Done{};
-  const auto why = !is_connected()        ? WarehouseError::no_connection
-                   : is_final(rows.get()) ? WarehouseError::unfit
-                                          : WarehouseError::cannot_store;
+  const auto why = !is_connected()            ? WarehouseError::no_connection
+                   : is_final(rows.get())     ? WarehouseError::unfit
+                   : is_of_server(rows.get()) ? WarehouseError::out_of_resources
+                                              : WarehouseError::cannot_store;
   return Error{why, PQerrorMessage(connection_.get())};
 }
 

@@ -17,6 +17,8 @@ const char* text(WarehouseError code) {
       return "the tables were made by a newer calibrd-collector; run that version";
     case WarehouseError::cannot_store:
       return "PostgreSQL does not store; it is tried again until it does";
+    case WarehouseError::out_of_resources:
+      return "PostgreSQL has no room or takes nothing at present; look at its disk and log";
     case WarehouseError::unfit:
       return "PostgreSQL cannot take this document, however often it is tried";
   }

@@ -5,7 +5,14 @@
 
 namespace calibrd::fleet {
 
-enum class WarehouseError { no_connection = 1, cannot_migrate, newer_schema, cannot_store, unfit };
+enum class WarehouseError {
+  no_connection = 1,
+  cannot_migrate,
+  newer_schema,
+  cannot_store,
+  out_of_resources,
+  unfit
+};
 
 std::error_code make_error_code(WarehouseError code);
 

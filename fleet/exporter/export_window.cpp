@@ -36,6 +36,11 @@ void ExportWindow::send_all_again() {
   for (auto& [id, row] : waiting_) row.pause = std::chrono::seconds(0), row.due = Time{};
 }
 
+void ExportWindow::begin_anew() {
+  newest_ = 0;
+  send_all_again();
+}
+
 bool ExportWindow::drop(const std::string& id) { return waiting_.erase(id) > 0; }
 
 }  // namespace calibrd::fleet

@@ -33,6 +33,10 @@ class ExportWindow {
   /// The broker or the collector has changed: what was sent may be lost.
   void send_all_again();
 
+  /// As send_all_again(), and the outbox is read from its beginning: what was dropped as refused is tried
+  /// once more.
+  void begin_anew();
+
   /// No longer to be sent, as it was stored or never can be. False: it was not in the window.
   bool drop(const std::string& id);
 

@@ -17,13 +17,19 @@ constexpr std::size_t kWindow = 32;  // calibrations, some kilobytes each
 constexpr std::size_t kMostHeard = 256;
 constexpr int kMostInFlight = 100;
 
-MqttSettings broker_of(const ExporterSettings& settings) {
+MqttSettings broker_of(const ExporterSettings& settings, const Teller& teller) {
   auto broker = settings.broker;
   broker.client_id = "calibrd-" + settings.cell;
   broker.will_topic = CellTopics(settings.prefix, settings.cell).status();
-  broker.will_payload =
-      status_payload(settings.cell, false, settings.version, std::chrono::system_clock::now());
+  broker.will_payload = status_payload(teller, false, std::nullopt);
   return broker;
+}
+
+/// PostgreSQL's words come on several.
+std::string on_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return text;
 }
 
 }  // namespace
@@ -36,13 +42,15 @@ Exporter::Exporter(const ExporterSettings& settings, const api::CellService& ser
       log_(std::move(log)),
       watch_(watch),
       window_(kWindow),
-      states_(service, topics_, settings.cell, settings.version) {}
+      guard_(random_instance()),
+      teller_{settings.cell, settings.version, guard_.instance()},
+      states_(service, topics_, teller_) {}
 
 Result<std::unique_ptr<Exporter>> Exporter::start(const ExporterSettings& settings,
                                                   const api::CellService& service, Outbox& outbox,
                                                   ExporterLog log, ExporterWatch& watch) {
   std::unique_ptr<Exporter> exporter(new Exporter(settings, service, outbox, std::move(log), watch));
-  auto client = MqttClient::start(broker_of(settings), exporter->events());
+  auto client = MqttClient::start(broker_of(settings, exporter->teller_), exporter->events());
   if (!client) return client.error();
   exporter->client_ = *std::move(client);
   watch.exporters.set(1);
@@ -136,7 +144,10 @@ void Exporter::look() {
   const auto publish_state = [this](const auto& topic, const auto& payload, auto expiry) {
     return publish(topic, payload, true, expiry);
   };
-  states_.look(publish_state, std::chrono::steady_clock::now());
+  const auto now = std::chrono::steady_clock::now();
+  const auto voice = guard_.voice(now);
+  watch_.contested.set(voice == Voice::contested ? 1 : 0);
+  states_.look(publish_state, voice, now);
   refill();
   send_due();
 }
@@ -145,6 +156,8 @@ void Exporter::look() {
 void Exporter::greet() {
   client_->subscribe(topics_.acknowledgements());
   client_->subscribe(collector_topic(settings_.prefix));
+  client_->subscribe(topics_.status());
+  guard_.connected(std::chrono::steady_clock::now());
   states_.forget();
   window_.send_all_again();
   log_("mqtt: connected to " + settings_.broker.host + ":" + std::to_string(settings_.broker.port) +
@@ -153,12 +166,22 @@ void Exporter::greet() {
 }
 
 void Exporter::hear(const Message& message) {
-  if (message.topic == collector_topic(settings_.prefix)) return window_.send_all_again();
+  if (message.topic == topics_.status()) return hear_status(message.payload);
+  // What an earlier collector refused may fit where this one stores it.
+  if (message.topic == collector_topic(settings_.prefix)) return window_.begin_anew();
   if (message.topic != topics_.acknowledgements()) return;
   const auto acknowledgement = parse_acknowledgement(message.payload);
   if (acknowledgement) return note(*acknowledgement);
   log_("mqtt: an acknowledgement that is none came on " + message.topic + "; who else publishes there?",
        false);
+}
+
+void Exporter::hear_status(const std::string& status) {
+  if (guard_.hear(status, std::chrono::steady_clock::now()))
+    log_("mqtt: another daemon speaks as cell " + settings_.cell +
+             "; give each its own mqtt.cell (and user). Until one is gone for a minute, no pose is told as "
+             "valid",
+         false);
 }
 
 void Exporter::note(const Acknowledgement& acknowledgement) {
@@ -171,8 +194,9 @@ void Exporter::note(const Acknowledgement& acknowledgement) {
   for (const auto& one : acknowledgement.refused)
     if (window_.drop(one.calibration_id)) {
       watch_.refused.add();
-      log_("mqtt: the collector cannot store calibration " + one.calibration_id + " (" + one.reason +
-               "); it stays in the outbox and is tried again when the daemon starts",
+      log_("mqtt: the collector cannot store calibration " + one.calibration_id + " (" +
+               on_one_line(one.reason) +
+               "); it stays in the outbox and is tried again when a collector or the daemon starts",
            false);
     }
 }

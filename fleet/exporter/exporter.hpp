@@ -12,6 +12,7 @@
 #include "api/service/cell_service.hpp"
 #include "fleet/exporter/export_window.hpp"
 #include "fleet/exporter/exporter_watch.hpp"
+#include "fleet/exporter/name_guard.hpp"
 #include "fleet/exporter/outbox.hpp"
 #include "fleet/exporter/state_publisher.hpp"
 #include "fleet/messages/acknowledgement.hpp"
@@ -56,6 +57,7 @@ class Exporter {
   void look();
   void greet();
   void hear(const Message& message);
+  void hear_status(const std::string& status);
   void note(const Acknowledgement& acknowledgement);
   void refill();
   void send_due();
@@ -72,6 +74,8 @@ class Exporter {
 
   // The thread's own.
   ExportWindow window_;
+  NameGuard guard_;
+  const Teller teller_;
   StatePublisher states_;
   std::string outbox_trouble_;
   std::chrono::steady_clock::time_point next_count_{};

@@ -9,6 +9,7 @@ namespace calibrd::fleet {
 struct ExporterWatch {
   api::Gauge exporters;  ///< 1 once there is one
   api::Gauge connected;  ///< 1 while connected to the broker
+  api::Gauge contested;  ///< 1 while another daemon speaks under the cell's name
   api::Counter connects;
   api::Counter sent;          ///< calibrations, one sent again counts again
   api::Counter acknowledged;  ///< calibrations a collector has stored

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fleet/exporter/payloads.hpp"
 
+#include <algorithm>
 #include <boost/json/object.hpp>
 #include <cstdio>
 
@@ -23,7 +24,8 @@ json::value text_or_null(const std::string& text) {
 }
 
 std::string rfc3339(api::SystemTime time) {
-  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count() % 1000;
+  const auto ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count() % 1000;
   char fraction[8];
   std::snprintf(fraction, sizeof fraction, ".%03dZ", static_cast<int>(ms));
   return utc_text(time, kUtcSeconds) + fraction;
@@ -33,27 +35,32 @@ std::string rfc3339(api::SystemTime time) {
 
 api::Seconds rest_of_validity(const api::PoseReport& pose) {
   if (!pose.valid || !pose.passed_check_age) return api::Seconds(0);
-  return std::max(api::Seconds(0), pose.max_unverified - *pose.passed_check_age);
+  return std::clamp(api::Seconds(pose.max_unverified - *pose.passed_check_age), api::Seconds(0),
+                    api::Seconds(kKept));
 }
 
-std::string status_payload(const std::string& cell, bool online, const std::string& version, api::SystemTime now) {
-  return api::json_line(json::object{{"format", "status/1"},
-                                     {"cell", cell},
-                                     {"online", online},
-                                     {"version", version},
-                                     {"since", rfc3339(now)}});
+std::string status_payload(const Teller& teller, bool online, std::optional<api::SystemTime> since) {
+  json::object body{{"format", "status/1"},
+                    {"cell", teller.cell},
+                    {"online", online},
+                    {"version", teller.version},
+                    {"instance", teller.instance}};
+  if (since) body["since"] = rfc3339(*since);
+  return api::json_line(body);
 }
 
-std::string pose_payload(const std::string& cell, const api::PoseReport& pose, api::SystemTime now, bool with_end) {
-  json::object body{{"format", "pose/1"},
-                    {"cell", cell},
-                    {"sensor", pose.sensor_id},
-                    {"state", api::name_of(pose.state)},
-                    {"valid", pose.valid},
-                    {"reason", text_or_null(pose.reason)},
-                    {"base_frame", pose.base_frame},
-                    {"sensor_frame", pose.sensor_frame},
-                    {"calibration", pose.known ? json::value(pose.known->calibration_id) : json::value(nullptr)}};
+std::string pose_payload(const std::string& cell, const api::PoseReport& pose, api::SystemTime now,
+                         bool with_end) {
+  json::object body{
+      {"format", "pose/1"},
+      {"cell", cell},
+      {"sensor", pose.sensor_id},
+      {"state", api::name_of(pose.state)},
+      {"valid", pose.valid},
+      {"reason", text_or_null(pose.reason)},
+      {"base_frame", pose.base_frame},
+      {"sensor_frame", pose.sensor_frame},
+      {"calibration", pose.known ? json::value(pose.known->calibration_id) : json::value(nullptr)}};
   if (pose.valid && pose.known && pose.known->result.T_base_sensor) {
     const auto& known = *pose.known;
     body["calibrated_at"] = rfc3339(known.calibrated_at);
@@ -67,8 +74,8 @@ std::string pose_payload(const std::string& cell, const api::PoseReport& pose, a
   return api::json_line(body);
 }
 
-std::string state_payload(const std::string& cell, const api::SensorReport& sensor, const api::PoseReport& pose,
-                          const api::DriftReport& drift) {
+std::string state_payload(const std::string& cell, const api::SensorReport& sensor,
+                          const api::PoseReport& pose, const api::DriftReport& drift) {
   return api::json_line(json::object{{"format", "state/1"},
                                      {"cell", cell},
                                      {"sensor", sensor.id},
@@ -90,8 +97,8 @@ std::string calibration_payload(const std::string& cell, const api::CalibrationR
   body["cell"] = cell;
   body["software_version"] =
       calibration.evidence ? text_or_null(calibration.evidence->software_version) : json::value(nullptr);
-  body["result"] =
-      calibration.result ? json::value(api::calibration_result_object(*calibration.result)) : json::value(nullptr);
+  body["result"] = calibration.result ? json::value(api::calibration_result_object(*calibration.result))
+                                      : json::value(nullptr);
   return api::json_line(body);
 }
 

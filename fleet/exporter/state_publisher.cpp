@@ -5,29 +5,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fleet/exporter/payloads.hpp"
-
 namespace calibrd::fleet {
 namespace {
 
-// Six tellings: a broker that is slow for some seconds does not make a cell vanish.
+// A broker that is slow for some seconds does not make a cell vanish.
 constexpr api::Seconds kMostBetween{10};
-constexpr std::chrono::seconds kKept{60};
 
 constexpr const char* kNotWatched =
     "The daemon was stopped; start it again: while it does not run, nothing watches the pose.";
+constexpr const char* kContested =
+    "Another daemon speaks under this cell's name; give each its own mqtt.cell.";
 
 std::chrono::seconds expiry_of(const api::PoseReport& pose) {
   const auto rest = std::chrono::seconds(std::lround(std::ceil(rest_of_validity(pose).count())));
   return std::clamp(rest, std::chrono::seconds(1), kKept);
 }
 
-api::PoseReport unwatched(api::PoseReport pose) {
+api::PoseReport not_valid(api::PoseReport pose, const char* reason) {
   pose.valid = false;
   if (pose.state == api::PoseState::calibrated) pose.state = api::PoseState::unverified;
-  pose.reason = kNotWatched;
-  pose.job.clear();
+  pose.reason = reason;
   return pose;
+}
+
+api::PoseReport unwatched(api::PoseReport pose) {
+  pose.job.clear();
+  return not_valid(std::move(pose), kNotWatched);
 }
 
 api::SensorReport unwatched(api::SensorReport sensor) {
@@ -38,12 +41,10 @@ api::SensorReport unwatched(api::SensorReport sensor) {
 
 }  // namespace
 
-StatePublisher::StatePublisher(const api::CellService& service, CellTopics topics, std::string cell,
-                               std::string version)
+StatePublisher::StatePublisher(const api::CellService& service, CellTopics topics, Teller teller)
     : service_(service),
       topics_(std::move(topics)),
-      cell_(std::move(cell)),
-      version_(std::move(version)),
+      teller_(std::move(teller)),
       online_since_(std::chrono::system_clock::now()) {}
 
 void StatePublisher::forget() {
@@ -51,14 +52,16 @@ void StatePublisher::forget() {
   online_since_ = std::chrono::system_clock::now();
 }
 
-void StatePublisher::look(const PublishRetained& publish, Time now) {
-  tell(topics_.status(), status_payload(cell_, true, version_, online_since_), publish, now);
+void StatePublisher::look(const PublishRetained& publish, Voice voice, Time now) {
+  tell(topics_.status(), status_payload(teller_, true, online_since_), publish, now);
+  if (voice == Voice::waiting) return;
   for (const auto& sensor : service_.sensors()) {
-    const auto pose = service_.pose(sensor.id);
+    auto pose = service_.pose(sensor.id);
     if (!pose) continue;
+    if (voice == Voice::contested) *pose = not_valid(*std::move(pose), kContested);
     tell_pose(*pose, publish, now);
     if (const auto drift = service_.drift(sensor.id))
-      tell(topics_.state(sensor.id), state_payload(cell_, sensor, *pose, *drift), publish, now);
+      tell(topics_.state(sensor.id), state_payload(teller_.cell, sensor, *pose, *drift), publish, now);
   }
 }
 
@@ -68,13 +71,13 @@ void StatePublisher::end(const PublishRetained& publish) const {
     const auto last = service_.pose(sensor.id);
     if (!last) continue;
     const auto pose = unwatched(*last);
-    publish(topics_.pose(sensor.id), pose_payload(cell_, pose, now), {});
+    publish(topics_.pose(sensor.id), pose_payload(teller_.cell, pose, now), {});
     if (auto drift = service_.drift(sensor.id)) {
       drift->watched = false;
-      publish(topics_.state(sensor.id), state_payload(cell_, unwatched(sensor), pose, *drift), {});
+      publish(topics_.state(sensor.id), state_payload(teller_.cell, unwatched(sensor), pose, *drift), {});
     }
   }
-  publish(topics_.status(), status_payload(cell_, false, version_, now), {});
+  publish(topics_.status(), status_payload(teller_, false, now), {});
 }
 
 void StatePublisher::tell(const std::string& topic, std::string payload, const PublishRetained& publish,
@@ -88,14 +91,15 @@ void StatePublisher::tell(const std::string& topic, std::string payload, const P
 void StatePublisher::tell_pose(const api::PoseReport& pose, const PublishRetained& publish, Time now) {
   const auto topic = topics_.pose(pose.sensor_id);
   const auto clock = std::chrono::system_clock::now();
-  auto essence = pose_payload(cell_, pose, clock, false);
+  auto essence = pose_payload(teller_.cell, pose, clock, false);
   const auto again_after = std::min(kMostBetween, pose.max_unverified / 3);
   const auto known = told_.find(topic);
   const bool is_known = known != told_.end() && known->second.payload == essence;
   if (is_known && (!pose.valid || now - known->second.at < again_after)) return;
   std::optional<std::chrono::seconds> expiry;  // that a pose is not valid may stand for ever
   if (pose.valid) expiry = expiry_of(pose);
-  if (publish(topic, pose_payload(cell_, pose, clock), expiry)) told_[topic] = {std::move(essence), now};
+  if (publish(topic, pose_payload(teller_.cell, pose, clock), expiry))
+    told_[topic] = {std::move(essence), now};
 }
 
 }  // namespace calibrd::fleet

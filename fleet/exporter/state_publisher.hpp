@@ -8,6 +8,8 @@
 #include <string>
 
 #include "api/service/cell_service.hpp"
+#include "fleet/exporter/name_guard.hpp"
+#include "fleet/exporter/payloads.hpp"
 #include "fleet/messages/topics.hpp"
 
 namespace calibrd::fleet {
@@ -24,9 +26,10 @@ class StatePublisher {
   using Time = std::chrono::steady_clock::time_point;
 
   /// `service` must outlive it.
-  StatePublisher(const api::CellService& service, CellTopics topics, std::string cell, std::string version);
+  StatePublisher(const api::CellService& service, CellTopics topics, Teller teller);
 
-  void look(const PublishRetained& publish, Time now);
+  /// Poses and states only with a clear voice; with a contested one none is valid.
+  void look(const PublishRetained& publish, Voice voice, Time now);
 
   /// The last words: no pose is valid, nothing is known of a sensor, and then that the cell is offline. They
   /// stay.
@@ -45,7 +48,7 @@ class StatePublisher {
 
   const api::CellService& service_;
   CellTopics topics_;
-  std::string cell_, version_;
+  Teller teller_;
   api::SystemTime online_since_;
   std::map<std::string, Told> told_;  // by topic
 };

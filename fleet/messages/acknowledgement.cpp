@@ -33,7 +33,8 @@ std::string acknowledgement_json(const Acknowledgement& acknowledgement) {
   for (const auto& id : acknowledgement.stored) stored.emplace_back(id);
   for (const auto& one : acknowledgement.refused)
     refused.push_back(json::object{{"calibration", one.calibration_id}, {"reason", one.reason}});
-  return json::serialize(json::object{{"format", "acknowledgement/1"}, {"stored", stored}, {"refused", refused}});
+  return json::serialize(
+      json::object{{"format", "acknowledgement/1"}, {"stored", stored}, {"refused", refused}});
 }
 
 std::optional<Acknowledgement> parse_acknowledgement(std::string_view input) {
@@ -48,7 +49,8 @@ std::optional<Acknowledgement> parse_acknowledgement(std::string_view input) {
   if (const auto* refused = list(*object, "refused"))
     for (const auto& one : *refused)
       if (auto id = member(one, "calibration"))
-        acknowledgement.refused.push_back({*std::move(id), member(one, "reason").value_or("no reason given")});
+        acknowledgement.refused.push_back(
+            {*std::move(id), member(one, "reason").value_or("no reason given")});
   return acknowledgement;
 }
 

@@ -16,13 +16,14 @@ std::string cells(const std::string& prefix) { return prefix + "/v1/cells/"; }
 
 bool is_name(std::string_view text) {
   const auto is_fit = [](unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' ||
-           c == '-';
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' ||
+           c == '_' || c == '-';
   };
   return !text.empty() && text.size() <= kLongestName && std::all_of(text.begin(), text.end(), is_fit);
 }
 
-CellTopics::CellTopics(const std::string& prefix, const std::string& cell) : base_(cells(prefix) + cell + "/") {}
+CellTopics::CellTopics(const std::string& prefix, const std::string& cell)
+    : base_(cells(prefix) + cell + "/") {}
 
 std::string collector_topic(const std::string& prefix) { return prefix + "/v1/collector"; }
 

@@ -15,11 +15,15 @@ class CellTopics {
  public:
   CellTopics(const std::string& prefix, const std::string& cell);
 
-  std::string status() const { return base_ + "status"; }                      ///< retained; also the last will
-  std::string calibrations() const { return base_ + "calibrations"; }          ///< each until it is acknowledged
+  std::string status() const { return base_ + "status"; }              ///< retained; also the last will
+  std::string calibrations() const { return base_ + "calibrations"; }  ///< each until it is acknowledged
   std::string acknowledgements() const { return base_ + "acknowledgements"; }  ///< by the collector
-  std::string pose(const std::string& sensor) const { return base_ + "sensors/" + sensor + "/pose"; }    ///< retained
-  std::string state(const std::string& sensor) const { return base_ + "sensors/" + sensor + "/state"; }  ///< retained
+  std::string pose(const std::string& sensor) const {
+    return base_ + "sensors/" + sensor + "/pose";
+  }  ///< retained
+  std::string state(const std::string& sensor) const {
+    return base_ + "sensors/" + sensor + "/state";
+  }  ///< retained
 
  private:
   std::string base_;

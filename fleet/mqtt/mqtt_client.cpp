@@ -23,6 +23,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds kFarewell{500}, kLook{5};
 constexpr int kMostPort = 65535;
 
+Status check_address(const MqttSettings& settings) {
+  if (settings.host.empty() || settings.port <= 0 || settings.port > kMostPort)
+    return Error{MqttError::bad_address, settings.host + ":" + std::to_string(settings.port)};
+  return Done{};
+}
+
 }  // namespace
 
 /// Shared with the thread, which a name server that does not answer may hold for longer than stop() waits.
@@ -127,15 +133,17 @@ struct MqttClient::Handle {
 MqttClient::MqttClient(std::shared_ptr<Handle> handle) : handle_(std::move(handle)) {}
 MqttClient::~MqttClient() { stop(); }
 
+Status MqttClient::check(const MqttSettings& settings) {
+  if (auto status = check_address(settings); !status) return status;
+  if (const auto tried = MqttConnection::make(settings, {}); !tried) return tried.error();
+  return Done{};
+}
+
 Result<std::unique_ptr<MqttClient>> MqttClient::start(const MqttSettings& settings, MqttEvents events) {
-  if (settings.host.empty() || settings.port <= 0 || settings.port > kMostPort)
-    return Error{MqttError::bad_address, settings.host + ":" + std::to_string(settings.port)};
+  if (auto status = check_address(settings); !status) return status.error();
   auto handle = std::make_shared<Handle>();
   handle->settings = settings;
   handle->events = std::move(events);
-  // What is wrong with files shows now; a broker that is not there yet is no error.
-  if (const auto tried = MqttConnection::make(settings, handle->guarded_events()); !tried)
-    return tried.error();
   std::unique_ptr<MqttClient> client(new MqttClient(handle));
   client->thread_ = std::thread([handle] { handle->run(); });
   return client;

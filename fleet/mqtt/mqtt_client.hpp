@@ -42,7 +42,11 @@ struct MqttEvents {
 /// broker has not taken, are for one connection. Safe to use from any thread.
 class MqttClient {
  public:
-  /// Connects in the background. Errors: MqttError, with the file or address.
+  /// Whether there is an address, and the files can be used. Errors: MqttError, with the file or address.
+  static Status check(const MqttSettings& settings);
+
+  /// Connects in the background. Files that cannot be used are a trouble, and read again at every attempt.
+  /// Errors: MqttError, with the address.
   static Result<std::unique_ptr<MqttClient>> start(const MqttSettings& settings, MqttEvents events);
   ~MqttClient();  ///< as stop()
 

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kQos = 1, kKeepAlive_s = 10, kMaxInFlight = 100;
 constexpr int kPeriod_ms = 1000, kPeriodWhileConnecting_ms = 50;
+constexpr std::chrono::seconds kSubscribeAgain{10};
 constexpr int kFirstRefusal = 0x80;  // MQTT 5, 4.13: reason codes from here on are failures
 
 /// libmosquitto counts its users.
@@ -138,7 +139,10 @@ std::string MqttConnection::run() {
 
 std::string MqttConnection::serve() {
   int code = MOSQ_ERR_SUCCESS;
-  while (code == MOSQ_ERR_SUCCESS && !is_abandoned_) code = step();
+  while (code == MOSQ_ERR_SUCCESS && !is_abandoned_) {
+    subscribe_again();
+    code = step();
+  }
   if (!refusal_.empty()) return refusal_;
   return why(code == MOSQ_ERR_NO_CONN && farewell_ != 0 ? farewell_ : code);
 }
@@ -214,10 +218,20 @@ void MqttConnection::note_subscription(int number, int reason) {
     topic = std::move(found->second);
     subscribing_.erase(found);
   }
-  if (reason >= kFirstRefusal)
-    events_.on_trouble("the broker refuses the subscription to " + topic + " (" +
-                       mosquitto_reason_string(reason) +
-                       "): nothing will be heard there; check the broker's access control list");
+  if (reason < kFirstRefusal) return;
+  refused_.push_back(topic);
+  refused_at_ = std::chrono::steady_clock::now();
+  events_.on_trouble("the broker refuses the subscription to " + topic + " (" +
+                     mosquitto_reason_string(reason) +
+                     "): nothing is heard there until it does not; check the broker's access control list");
+}
+
+/// A list that was mended is no reason for a broker to end the connection.
+void MqttConnection::subscribe_again() {
+  if (refused_.empty() || std::chrono::steady_clock::now() - refused_at_ < kSubscribeAgain) return;
+  std::vector<std::string> topics;
+  topics.swap(refused_);
+  for (const auto& topic : topics) subscribe(topic);
 }
 
 void MqttConnection::leave(bool with_will) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fleet/mqtt/mqtt_client.hpp"
 
@@ -50,6 +51,7 @@ class MqttConnection {
   std::string serve();
   int step();
   void note_subscription(int number, int reason);
+  void subscribe_again();
   void wake() const;
   std::string why(int code) const;
 
@@ -64,6 +66,8 @@ class MqttConnection {
   std::atomic<int> in_flight_ = 0;
   std::mutex mutex_;
   std::map<int, std::string> subscribing_;  // guarded by mutex_; topics by the library's number
+  std::vector<std::string> refused_;        // run()'s thread: topics to be subscribed to again
+  std::chrono::steady_clock::time_point refused_at_{};
 };
 
 }  // namespace calibrd::fleet

@@ -62,6 +62,7 @@ Status check_config(const Config& config) {
   if (auto status = check_motion(config, *model, *mapping); !status) return status;
   if (auto status = check(link_settings(config.robot)); !status) return status;
   if (auto status = check_mqtt(config); !status) return status;
+  if (auto status = check_mqtt_files(config); !status) return status;
   return check_sensors(config);
 }
 

@@ -65,10 +65,22 @@ Status check_mqtt(const Config& config) {
   if (!fleet::is_name(mqtt.prefix)) return bad("mqtt.prefix: letters, digits, '.', '_' and '-', at most 64");
   if (mqtt.tls.certificate.empty() != mqtt.tls.key.empty())
     return bad("mqtt.tls: certificate and key come together");
+  if (!mqtt.tls.enabled && !(mqtt.tls.ca.empty() && mqtt.tls.certificate.empty()))
+    return bad(
+        "mqtt.tls: its files are of no use without mqtt.tls.enabled = true: the password would go in clear");
+  if (mqtt.username.empty() && !mqtt.password_file.empty())
+    return bad("mqtt.password_file: a password is sent with mqtt.username alone; set that, too");
   for (const auto& [id, sensor] : config.sensors)
     if (!fleet::is_name(id))
       return bad("sensors." + id +
                  ": its name is a part of topics: letters, digits, '.', '_' and '-', at most 64");
+  return Done{};
+}
+
+Status check_mqtt_files(const Config& config) {
+  if (config.mqtt.host.empty()) return Done{};
+  if (auto status = fleet::MqttClient::check(settings_of(config.mqtt, {}).broker); !status)
+    return Error{status.error().code, "mqtt: " + status.error().detail};
   return Done{};
 }
 

@@ -15,6 +15,8 @@ namespace calibrd {
 
 /// Whether what is configured of the broker can be used. Errors: ConfigError, naming the key.
 Status check_mqtt(const Config& config);
+/// Whether its files can be read now; a running daemon reads them at every attempt to connect.
+Status check_mqtt_files(const Config& config);
 
 /// The daemon's word to a fleet: exporter and store brought together.
 class FleetLink {

@@ -86,6 +86,7 @@ void Operations::write_fleet(api::MetricsText& text) const {
   };
   const auto waiting = fleet_watch_.waiting.value();
   one("calibrd_mqtt_connected", fleet_watch_.connected.value());
+  one("calibrd_mqtt_name_contested", fleet_watch_.contested.value());
   one("calibrd_mqtt_connects_total", fleet_watch_.connects.value());
   one("calibrd_mqtt_calibrations_sent_total", fleet_watch_.sent.value());
   one("calibrd_mqtt_calibrations_acknowledged_total", fleet_watch_.acknowledged.value());

@@ -61,6 +61,8 @@ export function cellFaults(folder) {
     if (!first.some((pod) => pod.spec?.template && selects(selectorOf(object), pod.spec.template.metadata.labels)))
       faults.push(`${name} selects no pod of its cell`);
   }
+  for (const service of first.filter((object) => object.kind === "Service" && !object.spec.publishNotReadyAddresses))
+    faults.push(`Service ${service.metadata.name} hides a daemon that is not ready, and its pose`);
   const taken = first.flatMap(ownedBy);
   return [...faults, ...second.flatMap(ownedBy).filter((what) => taken.includes(what)).map((what) => `two cells have one ${what}`)];
 }

@@ -47,6 +47,7 @@ for (const [what, file, from, to, told] of [
   ["a service that selects another cell's pods", TEMPLATE, "    includeSelectors: true\n", "", "Service calibrd-cell7 selects pods of another cell"],
   ["a label that is no cell's own", TEMPLATE, "calibrd.io/cell: cell7", "calibrd.io/cell: one", "Deployment calibrd-cell7 selects pods of another cell"],
   ["a service that selects nothing", CELL, "  selector: { app: calibrd }\n  ports", "  selector: { app: other }\n  ports", "selects no pod"],
+  ["a pose that is hidden while a robot is away", CELL, "publishNotReadyAddresses: true", "publishNotReadyAddresses: false", "hides a daemon"],
   ["a secret in the environment", `${SIDE}/collector.yaml`, "CALIBRD_COLLECTOR_USERNAME, value: collector",
     "CALIBRD_COLLECTOR_USERNAME, valueFrom: { secretKeyRef: { name: calibrd-postgres, key: password } }", "secret in its environment"],
   ["a secret of two cells", CELL, "secretName: calibrd-cell7", "secretName: calibrd-cell", "two cells have one secret"],

@@ -21,7 +21,7 @@ ELSEWHERE = (
     (r"(sudo )?scripts/\S+", "minutes to hours each; that there is such a script is looked at here"),
     (r"docker build ", "takes an engine; scripts/test_image.sh builds each of these targets with buildah"),
     (r"docker compose ", "takes an engine; nothing here runs it: ctest -R manifests holds the files against their schema"),
-    (r"sudo apt install \./calibrd_", "changes the machine; scripts/test_package.sh does it in a root of its own"),
+    (r"sudo apt install \./build/release/package/calibrd_", "changes the machine; scripts/test_package.sh does it in a root of its own"),
     (r"sudo -u calibrd calibrd", "takes that user; scripts/test_package.sh runs it in a root of its own, as that user"),
     (r"sudo systemctl enable ", "changes the machine; scripts/test_package.sh enables the unit in a folder; nothing here starts it by systemd"),
     (r"sudo mkdir /etc/calibrd/robot|sudoedit /etc/calibrd/", "changes the machine; nothing here runs it"),

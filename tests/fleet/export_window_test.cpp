@@ -61,6 +61,18 @@ TEST(ExportWindow, AnotherDatabaseIsReadFromItsBeginning) {
       << "what waited goes on being sent";
 }
 
+TEST(ExportWindow, BeginningAnewTheOutboxIsReadFromItsBeginning) {
+  ExportWindow window(4);
+  window.add(1, "refused", "R");
+  window.add(2, "b", "B");
+  window.take_due(kStart);
+  window.drop("refused");
+  window.begin_anew();
+  EXPECT_EQ(window.newest(), 0);
+  window.add(1, "refused", "R");
+  EXPECT_EQ(window.take_due(kStart), (std::vector<std::string>{"B", "R"}));
+}
+
 TEST(ExportWindow, ARowThatIsReadTwiceIsHeldOnce) {
   ExportWindow window(4);
   window.add(1, "a", "A");

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The calibrd authors
 # SPDX-License-Identifier: Apache-2.0
-"""A client of ours finds its broker again, whatever it was that ended the connection. The collector stands for both clients."""
+"""A client of ours finds its broker again, whatever it was that ended the connection; the collector stands for both clients. Two daemons
+of one name, which end each other's connections, find out."""
 
 import contextlib
+import json
 import socket
 import subprocess
 import sys
@@ -14,10 +16,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "e2e"))
-from cell import BIN, CellTest, free_port, wait_until  # noqa: E402
+from cell import BIN, BUILD, SENSOR, CellTest, free_port, wait_until  # noqa: E402
 from certificates import Authority  # noqa: E402
 from engines import Collector, Mosquitto, are_installed  # noqa: E402
 
+EXPORTERS = BUILD / "tests/fleet_exporters"
 NO_DATABASE = SimpleNamespace(database="host=/nonexistent")
 
 
@@ -155,13 +158,47 @@ class Reconnect(CellTest):
         self.restart(broker)
         self.wait_connected(collector, 2)
 
-    def test_a_subscription_that_is_refused_is_said(self):
-        broker = StrictBroker(lambda number: b"\x90\x04" + number + b"\x00\x87")  # not authorised
+    def test_a_subscription_that_is_refused_is_said_and_asked_for_again(self):
+        asked = []
+        broker = StrictBroker(lambda number: asked.append(number) or b"\x90\x04" + number + b"\x00\x87")  # not authorised
         self.addCleanup(broker.close)
         collector = self.start(Collector(self.folder, BIN / "calibrd-collector", broker, NO_DATABASE))
         said = wait_until("the refusal is said", lambda: [line for line in collector.output().splitlines() if "refuses the subscription" in line])
         self.assertIn("calibrd/v1/cells/+/calibrations", said[0])
         self.assertIn("access control list", said[0])
+        wait_until("it is asked for again", lambda: len(asked) > 1)
+        self.assertEqual(broker.connections, 1)
+
+    def test_options_that_would_send_a_password_in_clear_are_refused(self):
+        done = subprocess.run([BIN / "calibrd-collector", "--ca", "/x.pem"], capture_output=True, text=True, timeout=20, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--tls", done.stderr)
+
+    def test_two_daemons_of_one_name_tell_no_valid_pose(self):
+        broker = self.start(Mosquitto(self.folder, free_port()))
+        poses, topic = self.folder / "poses.txt", f"calibrd/v1/cells/cell-0/sensors/{SENSOR}/pose"
+
+        def told() -> list[dict]:
+            return [json.loads(line) for line in poses.read_text().splitlines(keepends=True) if line.endswith("\n")]
+
+        def begin(name: str) -> subprocess.Popen:
+            work = subprocess.Popen(list(map(str, [EXPORTERS, self.folder / name, 1, broker.port, 0.01, 300, 0])), stdout=subprocess.DEVNULL)
+            self.addCleanup(work.kill)
+            return work
+
+        begin("one")
+        wait_until("its pose is told", lambda: '"valid": true' in broker.hear(topic, timeout_s=2))
+        with poses.open("w") as file:
+            listener = subprocess.Popen(["mosquitto_sub", "-V", "5", "-p", str(broker.port), "-t", topic], stdout=file)
+        self.addCleanup(listener.kill)
+        wait_until("it is heard", told)
+        second = begin("two")
+        wait_until("it is contested", lambda: "mqtt.cell" in told()[-1]["reason"] if told()[-1]["reason"] else False)
+        count = len(told())
+        time.sleep(15)  # they take turns
+        self.assertFalse([pose for pose in told()[count:] if pose["valid"]])
+        second.kill()
+        wait_until("one that is alone is believed again", lambda: told()[-1]["valid"], 90)
 
     def test_an_end_is_prompt_also_where_no_broker_is(self):
         broker, collector = self.start_both()
@@ -175,4 +212,6 @@ class Reconnect(CellTest):
 
 
 if __name__ == "__main__":
+    if not are_installed():
+        sys.exit(77)  # ctest tells it as skipped
     unittest.main()

@@ -21,7 +21,7 @@ struct StatePublisherTest : testing::Test {
     cell.make_calibrated();
     cell.pose_report.max_unverified = api::Seconds(24 * 3600);
   }
-  void look(std::chrono::seconds after) { publisher.look(keep(), StatePublisher::Time{} + 1h + after); }
+  void look(std::chrono::seconds after) { publisher.look(keep(), voice, StatePublisher::Time{} + 1h + after); }
   PublishRetained keep() {
     return [this](const auto& topic, const auto& payload, auto expiry) {
       retained[topic] = {payload, expiry};
@@ -35,7 +35,8 @@ struct StatePublisherTest : testing::Test {
 
   api::FakeCell cell;
   const CellTopics topics{"calibrd", "cell7"};
-  StatePublisher publisher{cell, topics, "cell7", "1.0"};
+  Voice voice = Voice::clear;
+  StatePublisher publisher{cell, topics, {"cell7", "1.0", "a"}};
   std::map<std::string, Retained> retained;
   std::vector<std::string> order;
   const std::string pose = topics.pose("kinect2"), state = topics.state("kinect2"), status = topics.status();
@@ -70,6 +71,30 @@ TEST_F(StatePublisherTest, APoseThatTurnsNotValidLosesItsTransformAndStays) {
   EXPECT_FALSE(holds(pose, "valid_until"));
   EXPECT_TRUE(holds(pose, "\"valid\": false"));
   EXPECT_FALSE(retained[pose].expiry);
+}
+
+TEST_F(StatePublisherTest, UnderANameThatMayBeAnothersNoPoseIsTold) {
+  voice = Voice::waiting;
+  look(0s);
+  EXPECT_EQ(order, std::vector{status});
+}
+
+TEST_F(StatePublisherTest, UnderANameThatIsContestedNoPoseIsValid) {
+  look(0s);
+  ASSERT_TRUE(holds(pose, "T_base_sensor"));
+  voice = Voice::contested;
+  look(1s);
+  EXPECT_TRUE(holds(pose, "\"valid\": false"));
+  EXPECT_FALSE(holds(pose, "T_base_sensor"));
+  EXPECT_TRUE(holds(pose, "mqtt.cell"));
+  EXPECT_TRUE(holds(state, "\"pose_valid\": false"));
+}
+
+TEST_F(StatePublisherTest, WhoHearsNoMoreTrustsAPoseForAMinuteAtMost) {
+  cell.pose_report.passed_check_age = api::Seconds(0);
+  EXPECT_EQ(rest_of_validity(cell.pose_report), api::Seconds(60));
+  cell.pose_report.max_unverified = api::Seconds(5);
+  EXPECT_EQ(rest_of_validity(cell.pose_report), api::Seconds(5));
 }
 
 TEST_F(StatePublisherTest, AnEndTakesBackPoseAndStateBeforeTheFarewell) {
