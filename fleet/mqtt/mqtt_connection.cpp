@@ -109,7 +109,7 @@ Status MqttConnection::set_up(const MqttSettings& settings) {
   host_ = settings.host;
   port_ = settings.port;
   wake_fd_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  client_ = mosquitto_new(settings.client_id.c_str(), true, this);
+  client_ = mosquitto_new(settings.client_id.empty() ? nullptr : settings.client_id.c_str(), true, this);
   if (wake_fd_ < 0 || !client_) return Error{MqttError::no_memory, {}};
   mosquitto_threaded_set(client_, true);  // publish() only puts it into the queue: run() writes
   mosquitto_int_option(client_, MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from cell import BIN, OF_THIS_BUILD, SENSOR, SOURCE, URDF, CellTest, call
+from cell import BIN, OF_THIS_BUILD, SENSOR, SOURCE, URDF, CellTest, call, wait_until
 
 
 class BadInput(CellTest):
@@ -47,6 +47,20 @@ class BadInput(CellTest):
                 self.assertEqual(ended.returncode, 0, ended.stderr)
                 self.assertEqual(ended.stderr.count("like defaults"), warnings, ended.stderr)
                 self.assertIn("the configuration is good", ended.stdout)
+
+    def test_files_of_a_fleet_are_checked_but_keep_no_daemon_down(self):
+        check = [BIN / "calibrd", "serve", "--config", SOURCE / "config/demo.toml", "--check-config"]
+        broker = ("mqtt.host=127.0.0.1", "mqtt.port=9", "mqtt.cell=cell7", "mqtt.username=cell7")
+        wrong = {"mqtt.password_file=/nonexistent/password": "/nonexistent/password", "mqtt.tls.ca=/nonexistent/ca.pem": "mqtt.tls.enabled",
+                 "mqtt.username=": "the configuration is good"}
+        for setting, said in wrong.items():
+            options = [word for one in (*OF_THIS_BUILD, *broker, setting) for word in ("--set", one)]
+            with self.subTest(setting):
+                ended = subprocess.run([*check, *options], cwd=SOURCE, timeout=20, capture_output=True, text=True, check=False)
+                self.assertIn(said, ended.stdout + ended.stderr)
+                self.assertEqual(ended.returncode, 0 if "good" in said else 2, ended.stderr)
+        daemon = self.serve(self.simulate(), *broker, "mqtt.password_file=/nonexistent/password").wait_alive()
+        wait_until("it is said", lambda: "/nonexistent/password" in daemon.output())
 
     def test_a_port_in_use(self):
         with socket.create_server(("127.0.0.1", 0)) as taken:

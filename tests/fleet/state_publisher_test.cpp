@@ -21,7 +21,9 @@ struct StatePublisherTest : testing::Test {
     cell.make_calibrated();
     cell.pose_report.max_unverified = api::Seconds(24 * 3600);
   }
-  void look(std::chrono::seconds after) { publisher.look(keep(), voice, StatePublisher::Time{} + 1h + after); }
+  void look(std::chrono::seconds after) {
+    publisher.look(keep(), voice, StatePublisher::Time{} + 1h + after);
+  }
   PublishRetained keep() {
     return [this](const auto& topic, const auto& payload, auto expiry) {
       retained[topic] = {payload, expiry};
