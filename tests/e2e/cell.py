@@ -29,8 +29,13 @@ def free_port() -> int:
         return listener.getsockname()[1]
 
 
+# Under a sanitizer programs are many times slower: so much longer is waited, and more time is allowed.
+SLOWNESS = float(os.environ.get("CALIBRD_SLOWNESS", "1"))
+
+
 def wait_until(what: str, condition, timeout_s: float = 30.0, period_s: float = 0.05):
     """The first true answer of `condition`. A refused connection counts as not yet."""
+    timeout_s *= SLOWNESS
     deadline, last = time.monotonic() + timeout_s, None
     while time.monotonic() < deadline:
         with contextlib.suppress(OSError, http.client.HTTPException):

@@ -6,7 +6,7 @@
 import time
 import unittest
 
-from cell import SENSOR, CellTest, call, wait_until
+from cell import SENSOR, SLOWNESS, CellTest, call, wait_until
 from poses import difference
 
 MAX_MM, MAX_MRAD = 3.0, 3.0
@@ -74,7 +74,7 @@ class Drift(CellTest):
                 begin = time.monotonic()
                 pose = wait_until("the pose is valid no longer", lambda: None if (p := daemon.pose())["valid"] else p, 20, 0.01)
                 # 0.7 to 0.8 s, and 2 s of darkness, where nobody else wants the processor
-                self.assertLess(time.monotonic() - begin, 4 if name == "no depth" else 2.5)
+                self.assertLess(time.monotonic() - begin, (4 if name == "no depth" else 2.5) * SLOWNESS)
                 self.assertEqual(pose["state"], "unverified")
 
     def test_a_candidate_waits_to_be_accepted(self):

@@ -9,7 +9,7 @@ import time
 import unittest
 from pathlib import Path
 
-from cell import SENSOR, CellTest, Daemon, Simulator, wait_until
+from cell import SENSOR, SLOWNESS, CellTest, Daemon, Simulator, wait_until
 
 CLOUD = f"/api/v1/sensors/{SENSOR}/clouds/residual"
 
@@ -126,7 +126,7 @@ class TimeOffset(CellTest):
         found = wait_until("it is applied", timeout_s=90, condition=lambda: (
             offset if (offset := daemon.sensor()["time_offset"])["applied"] else None))
         print(found)
-        self.assertAlmostEqual(found["value_s"], 0.04, delta=0.008)
+        self.assertAlmostEqual(found["value_s"], 0.04, delta=0.008 * SLOWNESS)
         self.assertEqual(found["source"], "estimated")
 
 

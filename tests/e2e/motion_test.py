@@ -10,7 +10,7 @@ import socket
 import time
 import unittest
 
-from cell import SENSOR, CellTest, call, wait_until
+from cell import SENSOR, SLOWNESS, CellTest, call, wait_until
 
 STOP, END_MODE, DISCONNECT, START_MODE, POINT = "200111", "200122", "200130", "200121", "14"
 HERE_RAD = [0.3, 0.4, 0.2, 0.8, 0.1, 0.5, 0.0]
@@ -114,7 +114,7 @@ class Motion(CellTest):
         asked = time.monotonic()
         self.assertEqual(call(daemon.port, "DELETE", location).status, 200)
         self.wait_ended(daemon, location, "stopped", 5)
-        self.assertLess(time.monotonic() - asked, 1.0)
+        self.assertLess(time.monotonic() - asked, 1.0 * SLOWNESS)
         self.expect_stopped_by_calibrd(simulator)
         self.assertEqual(call(daemon.port, "DELETE", location).json()["code"], "motion_ended")
         # A person has to look first: the robot's ROS job is over.
@@ -160,7 +160,7 @@ class Motion(CellTest):
                     daemon.process.wait()
                     self.expect_standing(simulator)
                 else:
-                    self.assertLess(daemon.stop(), 1.5)
+                    self.assertLess(daemon.stop(), 1.5 * SLOWNESS)
                     self.expect_stopped_by_calibrd(simulator)
 
     def test_another_client_of_the_motion_port_ends_it(self):
